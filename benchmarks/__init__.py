@@ -1,0 +1,1 @@
+"""What ``tifo bench`` runs."""

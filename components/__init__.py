@@ -1,0 +1,29 @@
+"""What an entity has: plain columns of NumPy arrays, one row an agent.
+
+A crowd is one entity whose components hold one row for each of its agents; an agent's id is its row
+and is never reused. Nothing here knows of systems, engines or drawing.
+"""
+
+from .animation import AgentAnimID, BakedAnim, Transition
+from .appearance import Appearance
+from .detail import Detail, Level
+from .motion import MotionState
+from .placement import Placement
+from .seat import Seat, Section
+from .team import Team
+from .view import View
+
+__all__ = [
+    "AgentAnimID",
+    "Appearance",
+    "BakedAnim",
+    "Detail",
+    "Level",
+    "MotionState",
+    "Placement",
+    "Seat",
+    "Section",
+    "Team",
+    "Transition",
+    "View",
+]

@@ -1,0 +1,1 @@
+"""What the systems call: pure functions and small classes, with no esper and no systems in sight."""

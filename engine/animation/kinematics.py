@@ -1,0 +1,255 @@
+"""Forward kinematics of many streams at once: local poses to skinning palettes.
+
+Palettes are equation 1 of *Streams 2017* without the weights, ``P_j = M_j inverse_bind_j`` with
+``M_j = M_parent L_j``, as affine 3x4 matrices. The work goes level by level of the joint tree: a
+level of all streams is a few hundred kilobytes, so its local matrices, its model matrices and its
+palettes are made while it is in cache, and only model matrices of one level back are read again.
+Every array view that a tick needs is made once, in the constructor: making views costs as much as
+multiplying a small block.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .pose import CHANNELS, PoseLayout
+from .skeleton import Skeleton
+
+Array = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Level:
+    """Views of one level of j joints and S streams."""
+
+    joints: slice
+    parents: NDArray[np.int64] | None
+    parent_model: Array
+    """(3, 4, j, S): the parents' model matrices, gathered."""
+    rotation: tuple[Array, ...]
+    """x, y, z, w of the local rotation, (j, S) each."""
+    vector: Array
+    """(3, j, S): x, y, z of the local rotation."""
+    quaternion: Array
+    translation: Array
+    scale: Array
+    local: Array
+    local_rows: tuple[tuple[Array, ...], ...]
+    local_linear: Array
+    model: Array
+    term: Array
+    squares: Array
+    square_terms: tuple[Array, ...]
+    products: Array
+    product_terms: tuple[Array, ...]
+    factor: Array
+    palette: Array
+    palette_by_stream: Array
+    """(S, j, 3, 4) view of `palette`."""
+    inverse_bind: Array
+    """(3, 4, j, 1)"""
+
+
+class Kinematics:
+    """Workspace that turns S local poses of one skeleton into palettes.
+
+    Parameters
+    ----------
+    skeleton
+        The joint tree.
+    streams
+        How many poses are evaluated together, S.
+    """
+
+    __slots__ = ("_levels", "_pose", "_rotated_bind", "layout", "mixed", "scratch", "streams")
+
+    def __init__(self, skeleton: Skeleton, streams: int) -> None:
+        self.streams = streams
+        self.layout = PoseLayout(skeleton)
+        count = CHANNELS * skeleton.joint_count
+        self.mixed = np.empty((streams, count), dtype=np.float32)
+        self.scratch = np.empty_like(self.mixed)
+        self._pose = np.empty((count, streams), dtype=np.float32)
+        self._rotated_bind = not np.allclose(
+            skeleton.inverse_bind[:, :, :3], np.eye(3, dtype=np.float32), rtol=0, atol=1e-7
+        )
+        self._levels = _make_levels(skeleton, self.layout, self._pose, streams)
+
+    def evaluate(self, pose: Array, palettes: Array, rows: NDArray[np.int64] | None = None) -> None:
+        """Write the palettes of S poses.
+
+        Parameters
+        ----------
+        pose
+            (S, 10 J) float32 local poses in the order of `PoseLayout`; rotations need not be
+            normalised.
+        palettes
+            (R, J, 3, 4) float32, written in place.
+        rows
+            (S,) which row of `palettes` each pose goes to; the first S rows if None.
+        """
+        self._pose[...] = pose.T
+        previous: Array | None = None
+        target = palettes[: self.streams] if rows is None else palettes
+        for level in self._levels:
+            _local_matrices(level)
+            if previous is not None and level.parents is not None:
+                np.take(previous, level.parents, axis=2, out=level.parent_model, mode="clip")
+                _multiply(level.parent_model, level.local, level.model, level.term)
+            if self._rotated_bind:
+                _multiply(level.model, level.inverse_bind, level.palette, level.term)
+            else:
+                _translate(level)
+            if rows is None:
+                target[:, level.joints] = level.palette_by_stream
+            else:
+                target[rows, level.joints] = level.palette_by_stream
+            previous = level.model
+
+    def joint_positions(self, joints: NDArray[np.int64]) -> Array:
+        """Model-space positions of some joints after `evaluate`.
+
+        Parameters
+        ----------
+        joints
+            (K,) joint indices.
+
+        Returns
+        -------
+        (S, K, 3) float32, metres.
+        """
+        out = np.empty((self.streams, len(joints), 3), dtype=np.float32)
+        for level in self._levels:
+            inside = np.flatnonzero((joints >= level.joints.start) & (joints < level.joints.stop))
+            if len(inside):
+                local = joints[inside] - level.joints.start
+                out[:, inside] = level.model[:, 3, local].transpose(2, 1, 0)
+        return out
+
+
+def _make_levels(
+    skeleton: Skeleton, layout: PoseLayout, pose: Array, streams: int
+) -> tuple[_Level, ...]:
+    widest = max(level.stop - level.start for level in skeleton.levels)
+    buffers = {
+        name: np.empty(planes * widest * streams, dtype=np.float32)
+        for name, planes in (
+            ("parent", 12),
+            ("local", 12),
+            ("term", 12),
+            ("squares", 4),
+            ("products", 6),
+            ("factor", 1),
+            ("palette", 12),
+        )
+    }
+    made = []
+    for number, (joints, rows) in enumerate(zip(skeleton.levels, layout.levels, strict=True)):
+        j = joints.stop - joints.start
+
+        def plane(
+            name: str, *shape: int, width: int = j, buffers: dict[str, Array] = buffers
+        ) -> Array:
+            full = (*shape, width, streams)
+            return buffers[name][: int(np.prod(full))].reshape(full)
+
+        block = pose[rows].reshape(CHANNELS, j, streams)
+        model = np.empty((3, 4, j, streams), dtype=np.float32)
+        local = model if number == 0 else plane("local", 3, 4)
+        squares, products, palette = (
+            plane("squares", 4),
+            plane("products", 6),
+            plane("palette", 3, 4),
+        )
+        parents = None
+        if number > 0:
+            parents = (skeleton.parents[joints] - skeleton.levels[number - 1].start).astype(
+                np.int64
+            )
+        made.append(
+            _Level(
+                joints=joints,
+                parents=parents,
+                parent_model=plane("parent", 3, 4),
+                rotation=(block[0], block[1], block[2], block[3]),
+                vector=block[:3],
+                quaternion=block[:4],
+                translation=block[4:7],
+                scale=block[7:10],
+                local=local,
+                local_rows=tuple(tuple(local[r, c] for c in range(4)) for r in range(3)),
+                local_linear=local[:, :3],
+                model=model,
+                term=plane("term", 3, 4),
+                squares=squares,
+                square_terms=tuple(squares),
+                products=products,
+                product_terms=tuple(products),
+                factor=plane("factor"),
+                palette=palette,
+                palette_by_stream=palette.transpose(3, 2, 0, 1),
+                inverse_bind=np.ascontiguousarray(
+                    skeleton.inverse_bind[joints].transpose(1, 2, 0)[..., None]
+                ),
+            )
+        )
+    return tuple(made)
+
+
+def _local_matrices(level: _Level) -> None:
+    """T R S of a level; R from a quaternion of any length."""
+    _, y, z, w = level.rotation
+    squares, products, factor = level.squares, level.products, level.factor
+    np.multiply(level.quaternion, level.quaternion, out=squares)
+    qx, qy, qz, qw = level.square_terms
+    np.add(qx, qy, out=factor)
+    np.add(factor, qz, out=factor)
+    np.add(factor, qw, out=factor)
+    np.divide(2.0, factor, out=factor)
+    # 2/|q|^2 times wx wy wz, xy xz yz; the squares' buffer then holds 2/|q|^2 times xx yy zz.
+    np.multiply(level.vector, factor, out=level.term[0, :3])
+    doubled = level.term[0]
+    np.multiply(doubled[:3], w, out=products[:3])
+    np.multiply(doubled[0], y, out=products[3])
+    np.multiply(doubled[:2], z, out=products[4:6])
+    np.multiply(squares[:3], factor, out=squares[:3])
+    wx, wy, wz, xy, xz, yz = level.product_terms
+    (r00, r01, r02, _), (r10, r11, r12, _), (r20, r21, r22, _) = level.local_rows
+    np.add(qy, qz, out=factor)
+    np.subtract(1.0, factor, out=r00)
+    np.add(qx, qz, out=factor)
+    np.subtract(1.0, factor, out=r11)
+    np.add(qx, qy, out=factor)
+    np.subtract(1.0, factor, out=r22)
+    np.subtract(xy, wz, out=r01)
+    np.add(xy, wz, out=r10)
+    np.add(xz, wy, out=r02)
+    np.subtract(xz, wy, out=r20)
+    np.subtract(yz, wx, out=r12)
+    np.add(yz, wx, out=r21)
+    np.multiply(level.local_linear, level.scale, out=level.local_linear)
+    level.local[:, 3] = level.translation
+
+
+def _multiply(a: Array, b: Array, out: Array, term: Array) -> None:
+    """Affine product over planes: (3, 4, j, S) times (3, 4, j, S or 1)."""
+    np.multiply(a[:, 0, None], b[None, 0], out=out)
+    np.multiply(a[:, 1, None], b[None, 1], out=term)
+    np.add(out, term, out=out)
+    np.multiply(a[:, 2, None], b[None, 2], out=term)
+    np.add(out, term, out=out)
+    np.add(out[:, 3], a[:, 3], out=out[:, 3])
+
+
+def _translate(level: _Level) -> None:
+    """Palettes of joints whose bind pose is not rotated: only the last column changes."""
+    palette, model, term = level.palette, level.model, level.term
+    palette[:, :3] = model[:, :3]
+    offset = level.inverse_bind[:, 3]
+    np.multiply(model[:, :3], offset, out=term[:, :3])
+    np.add(term[:, 0], term[:, 1], out=palette[:, 3])
+    np.add(palette[:, 3], term[:, 2], out=palette[:, 3])
+    np.add(palette[:, 3], model[:, 3], out=palette[:, 3])

@@ -1,0 +1,205 @@
+"""Which clips a crowd uses for what, and the streams that play them.
+
+Characters come with all kinds of clip names. The library sorts them into roles by name, shares the
+streams of a pool out among the motions, and draws motions for agents.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..animation.clip import Clip
+from ..streams.pool import StreamPool
+
+
+class Role(Enum):
+    """What a motion is for."""
+
+    CALM = "calm"
+    APPLAUD = "applaud"
+    CHEER = "cheer"
+    DISMAY = "dismay"
+
+
+@dataclass(frozen=True, slots=True)
+class _Pattern:
+    """Clips whose names match belong to `role`; `innate` weighs them when nothing happens."""
+
+    words: str
+    role: Role
+    innate: float
+
+
+# The first pattern that matches decides. Single-purpose clips (an attack, a death) match nothing
+# and are used only if a character has nothing better.
+_PATTERNS = (
+    _Pattern(r"stand_?up|sit_?down|standup|sitdown", Role.CALM, 0.0),
+    _Pattern(r"sit\w*clap", Role.APPLAUD, 3.0),
+    _Pattern(r"clap|applau", Role.APPLAUD, 1.0),
+    _Pattern(r"cheer|fist|jump_full|celebrat|dance|(^|_)jump$", Role.CHEER, 0.0),
+    _Pattern(r"wave|thumbsup|yes", Role.CHEER, 1.5),
+    _Pattern(r"dismay|disappoint|(^|_)no$|hit_a|sad|hands_on_head", Role.DISMAY, 0.0),
+    _Pattern(r"sit\w*idle|^sitting$|sit_idle", Role.CALM, 60.0),
+    _Pattern(r"idle|stand", Role.CALM, 10.0),
+)
+_REJECTED = re.compile(r"2h_|1h_|block|death|unarmed|dualwield|spell|lie_|pose", re.IGNORECASE)
+_STAND_FOR: dict[Role, tuple[Role, ...]] = {
+    Role.CALM: (Role.APPLAUD, Role.CHEER),
+    Role.APPLAUD: (Role.CHEER,),
+    Role.CHEER: (Role.APPLAUD,),
+    Role.DISMAY: (Role.CALM,),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MotionLibrary:
+    """Motions of one crowd.
+
+    Parameters
+    ----------
+    names
+        K motion names, the clips' names.
+    clips
+        (K,) int64 clip of each motion in the pool's bank.
+    roles
+        Motions of each role, never empty.
+    innate
+        (K,) float64 probability of each motion when nothing happens; sums to 1.
+    """
+
+    names: tuple[str, ...]
+    clips: NDArray[np.int64]
+    roles: dict[Role, NDArray[np.int16]]
+    innate: NDArray[np.float64]
+
+    def draw(self, role: Role, count: int, rng: np.random.Generator) -> NDArray[np.int16]:
+        """`count` motions of a role, each as likely as any other."""
+        choices = self.roles[role]
+        return np.take(choices, rng.integers(0, len(choices), count))
+
+    def draw_innate(self, count: int, rng: np.random.Generator) -> NDArray[np.int16]:
+        """`count` motions by their innate probabilities."""
+        edges = np.cumsum(self.innate)
+        drawn = np.searchsorted(edges, rng.random(count) * edges[-1], side="right")
+        motions: NDArray[np.int16] = np.minimum(drawn, len(self.names) - 1).astype(np.int16)
+        return motions
+
+
+def sort_motions(clips: Sequence[Clip]) -> MotionLibrary:
+    """Sort a character's clips into roles by their names.
+
+    A role that no clip matches is played by another role's motions, and by the first clip if
+    nothing matches at all; a character with one clip uses it for everything.
+
+    Raises
+    ------
+    ValueError
+        If there are no clips.
+    """
+    if not clips:
+        raise ValueError("clips: a crowd needs at least one clip")
+    kept: list[int] = []
+    role_of: list[Role] = []
+    weight: list[float] = []
+    for index, clip in enumerate(clips):
+        pattern = _match(clip.name)
+        if pattern is not None and clip.looping:
+            kept.append(index)
+            role_of.append(pattern.role)
+            weight.append(pattern.innate)
+    if not kept:
+        kept, role_of, weight = [0], [Role.CALM], [1.0]
+        if len(clips) > 1:
+            kept, role_of, weight = [0, 1], [Role.CALM, Role.CHEER], [1.0, 0.0]
+    roles = {
+        role: np.array([k for k, r in enumerate(role_of) if r is role], np.int16) for role in Role
+    }
+    full = dict(roles)
+    everything = np.arange(len(kept), dtype=np.int16)
+    for role in Role:
+        if not len(roles[role]):
+            stand_in = (roles[other] for other in _STAND_FOR[role] if len(roles[other]))
+            full[role] = next(stand_in, everything)
+    innate = np.array(weight)
+    if innate.sum() <= 0:
+        innate = np.zeros(len(kept))
+        innate[full[Role.CALM]] = 1.0
+    return MotionLibrary(
+        names=tuple(clips[index].name for index in kept),
+        clips=np.array(kept, np.int64),
+        roles=full,
+        innate=innate / innate.sum(),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MotionStreams:
+    """Which streams play each motion.
+
+    Parameters
+    ----------
+    first, count
+        (K,) int32: motion k is played by the stream rows ``first[k]`` to
+        ``first[k] + count[k] - 1``.
+    """
+
+    first: NDArray[np.int32]
+    count: NDArray[np.int32]
+
+    def draw_rows(self, motion: NDArray[np.int16], rng: np.random.Generator) -> NDArray[np.int32]:
+        """A stream row for each wanted motion."""
+        pick = (rng.random(len(motion)) * self.count[motion]).astype(np.int32)
+        rows: NDArray[np.int32] = self.first[motion] + pick
+        return rows
+
+
+def start_streams(
+    pool: StreamPool, library: MotionLibrary, streams: int, rng: np.random.Generator
+) -> MotionStreams:
+    """Start `streams` streams and share them out among the motions.
+
+    Every motion gets at least one stream, and more the more agents will want it. Streams of one
+    motion differ in phase and by up to 8 % in speed. With fewer streams than motions, motions share.
+
+    Parameters
+    ----------
+    pool
+        Gets the streams; must have that many free rows.
+    library
+        The motions.
+    streams
+        How many, at least 1.
+    rng
+        Where phases and speeds come from.
+    """
+    motions = len(library.names)
+    # Reactions are rare in time but everybody's at once, so they get half of the streams.
+    share = 0.5 * library.innate + 0.5 / motions
+    wanted = np.maximum(np.floor(share * streams), 1).astype(np.int32)
+    while wanted.sum() > max(streams, motions):
+        wanted[np.argmax(wanted)] -= 1
+    while wanted.sum() < streams:
+        wanted[np.argmax(share * streams - wanted)] += 1
+    first = np.concatenate([[0], np.cumsum(wanted)[:-1]]).astype(np.int32)
+    if streams < motions:
+        # Rows beyond the last wrap round to the streams that exist.
+        first %= streams
+    playing = np.repeat(np.arange(motions), wanted)[:streams]
+    rows = []
+    for motion in playing:
+        clip = int(library.clips[motion])
+        time = rng.uniform(0.0, float(pool.bank.duration[clip]))
+        rows.append(pool.add(clip, time=time, speed=rng.uniform(0.92, 1.08)).row)
+    return MotionStreams(first=first + np.int32(rows[0]), count=wanted)
+
+
+def _match(name: str) -> _Pattern | None:
+    if _REJECTED.search(name):
+        return None
+    return next((p for p in _PATTERNS if re.search(p.words, name, re.IGNORECASE)), None)

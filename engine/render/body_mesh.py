@@ -1,0 +1,99 @@
+"""A character's meshes as the skinning pass draws them.
+
+Materials without a picture differ only in colour, so their meshes are joined into one batch with
+the colour in the vertices; each picture needs a batch of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..assets.character import Material, SkinnedMesh
+
+SURFACES = ("skin", "hair", "shirt", "trousers", "shoes")
+"""Materials of these names take the agent's colour; the order is that of the looks table."""
+NO_SURFACE = 255
+
+VERTEX = np.dtype(
+    [
+        ("position", np.float32, 3),
+        ("normal", np.float32, 3),
+        ("uv", np.float32, 2),
+        ("weights", np.float32, 4),
+        ("joints", np.uint16, 4),
+        ("color", np.uint8, 4),
+        ("surface", np.uint8),
+        ("padding", np.uint8, 3),
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Batch:
+    """Triangles that one call draws.
+
+    Parameters
+    ----------
+    vertices
+        (V,) of `VERTEX`.
+    indices
+        (3 T,) uint32.
+    image
+        (H, W, 4) uint8 sRGB picture, or None.
+    double_sided
+        Whether back faces are drawn.
+    """
+
+    vertices: NDArray[np.void]
+    indices: NDArray[np.uint32]
+    image: NDArray[np.uint8] | None
+    double_sided: bool
+
+
+def make_batches(meshes: Sequence[SkinnedMesh], materials: Sequence[Material]) -> tuple[Batch, ...]:
+    """Join meshes into as few batches as their pictures and sidedness allow."""
+    groups: dict[tuple[int, bool], list[SkinnedMesh]] = {}
+    for mesh in meshes:
+        material = materials[mesh.material]
+        key = (-1 if material.image is None else mesh.material, material.double_sided)
+        groups.setdefault(key, []).append(mesh)
+    return tuple(
+        Batch(
+            vertices=np.concatenate([_vertices(mesh, materials[mesh.material]) for mesh in group]),
+            indices=_indices(group),
+            image=None if picture < 0 else materials[picture].image,
+            double_sided=double_sided,
+        )
+        for (picture, double_sided), group in groups.items()
+    )
+
+
+def _vertices(mesh: SkinnedMesh, material: Material) -> NDArray[np.void]:
+    out = np.zeros(len(mesh.positions), VERTEX)
+    out["position"], out["normal"], out["uv"] = mesh.positions, mesh.normals, mesh.uvs
+    out["weights"], out["joints"] = mesh.weights, mesh.joints
+    varies = material.name in SURFACES
+    out["surface"] = SURFACES.index(material.name) if varies else NO_SURFACE
+    base = np.ones(4) if varies else np.array(material.base_color, np.float64)
+    linear: NDArray[np.float64] = np.clip(mesh.colors * base, 0.0, 1.0)
+    out["color"] = np.round(255.0 * _to_srgb(linear)).astype(np.uint8)
+    return out
+
+
+def _indices(meshes: Sequence[SkinnedMesh]) -> NDArray[np.uint32]:
+    firsts = np.concatenate([[0], np.cumsum([len(mesh.positions) for mesh in meshes])[:-1]])
+    return np.concatenate(
+        [mesh.triangles.ravel() + first for mesh, first in zip(meshes, firsts, strict=True)]
+    ).astype(np.uint32)
+
+
+def _to_srgb(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+    """RGB of (V, 4) to sRGB, IEC 61966-2-1; alpha stays."""
+    out = linear.copy()
+    rgb = linear[:, :3]
+    out[:, :3] = np.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055)
+    return out

@@ -1,0 +1,54 @@
+"""Agents of a few pixels: one quad each, on which the fragments draw a figure of strokes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..gl.program import Program
+from ..gl.vertex_array import Primitive, VertexArray
+from .agent_tables import AgentTables
+from .frame import Frame
+from .pose_textures import PoseTextures
+from .skinned_pass import InstanceList
+from .state import opaque
+
+
+class FigurePass:
+    """Draws the farthest level of detail.
+
+    Parameters
+    ----------
+    height
+        Height of the character in metres, before an agent's scale.
+    defines
+        Of the pose source.
+    """
+
+    def __init__(self, height: float, defines: Mapping[str, int]) -> None:
+        self._program = Program(
+            "far/figure.vert.glsl", "far/figure.frag.glsl", defines=dict(defines)
+        )
+        self._height = height
+        self.agents = InstanceList()
+        self._vertex_array = VertexArray(self._program, [self.agents.input()])
+
+    def draw(self, frame: Frame, tables: AgentTables, poses: PoseTextures) -> int:
+        """Draw all figures; triangles drawn."""
+        if not self.agents.count:
+            return 0
+        program = self._program
+        frame.apply(program)
+        tables.bind(program, frame.tick, frame.alpha)
+        poses.bind(program, markers=True)
+        program["body_height"] = self._height
+        program["pixel"] = 2.0 / (float(frame.projection[1, 1]) * frame.size[1])
+        opaque(cull=False, coverage=True)
+        self._vertex_array.draw_instanced(Primitive.TRIANGLE_STRIP, 4, self.agents.count)
+        opaque()
+        return 2 * self.agents.count
+
+    def delete(self) -> None:
+        """Delete everything on the GPU."""
+        self._vertex_array.delete()
+        self.agents.buffer.delete()
+        self._program.delete()

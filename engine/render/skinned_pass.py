@@ -1,0 +1,148 @@
+"""Agents close enough for a mesh: instanced, skinned in the vertex shader."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..assets.character import Character
+from ..gl.buffer import Buffer
+from ..gl.program import Program
+from ..gl.texture import Texture2D
+from ..gl.texture_format import TextureFormat
+from ..gl.vertex_array import Primitive, VertexArray
+from ..gl.vertex_input import Attribute, VertexInput
+from .agent_tables import AgentTables
+from .body_mesh import VERTEX, Batch, make_batches
+from .frame import Frame
+from .pose_textures import PoseTextures
+from .state import opaque
+
+IMAGE_UNIT = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Drawn:
+    """A batch on the GPU."""
+
+    program: Program
+    vertex_array: VertexArray
+    buffers: tuple[Buffer, Buffer]
+    image: Texture2D | None
+    double_sided: bool
+
+
+class InstanceList:
+    """Ids of the agents that one level draws, as an instance attribute."""
+
+    def __init__(self) -> None:
+        self.buffer = Buffer(4 * 1024, "stream")
+        self.count = 0
+
+    def write(self, agents: NDArray[np.uint32]) -> int:
+        """Copy the ids; bytes copied."""
+        self.count = len(agents)
+        if agents.nbytes > self.buffer.nbytes:
+            self.buffer.replace(2 * agents.nbytes)
+        self.buffer.write(agents, orphan=True)
+        return agents.nbytes
+
+    def input(self) -> VertexInput:
+        """The attribute ``agent``."""
+        return VertexInput(self.buffer, [Attribute("agent", 1, np.uint32, integer=True)], divisor=1)
+
+
+class SkinnedPass:
+    """Draws a character's meshes, one level of detail a list of agents.
+
+    Parameters
+    ----------
+    character
+        Meshes and materials; missing coarser levels are replaced by the coarsest there is.
+    defines
+        Of the pose source.
+    levels
+        How many lists of agents there are.
+    """
+
+    def __init__(self, character: Character, defines: Mapping[str, int], levels: int) -> None:
+        vertex, fragment = "crowd/skinned.vert.glsl", "crowd/skinned.frag.glsl"
+        self._plain = Program(vertex, fragment, defines=dict(defines))
+        self._textured: Program | None = None
+        if any(material.image is not None for material in character.materials):
+            self._textured = Program(vertex, fragment, defines={**defines, "TEXTURED": 1})
+        meshes = [character.meshes, *character.lower_levels]
+        self.lists = tuple(InstanceList() for _ in range(levels))
+        self._levels = tuple(
+            tuple(
+                self._upload(batch, self.lists[level])
+                for batch in make_batches(meshes[min(level, len(meshes) - 1)], character.materials)
+            )
+            for level in range(levels)
+        )
+
+    def draw(self, frame: Frame, tables: AgentTables, poses: PoseTextures) -> int:
+        """Draw all lists; triangles drawn."""
+        triangles = 0
+        programs = [self._plain] if self._textured is None else [self._plain, self._textured]
+        for program in programs:
+            frame.apply(program)
+            tables.bind(program, frame.tick, frame.alpha)
+            poses.bind(program, markers=False)
+            for level, agents in zip(self._levels, self.lists, strict=True):
+                for batch in level:
+                    if batch.program is program and agents.count:
+                        triangles += self._draw(batch, agents.count)
+        return triangles
+
+    def _draw(self, batch: _Drawn, instances: int) -> int:
+        opaque(cull=not batch.double_sided)
+        if batch.image is not None:
+            batch.image.bind(IMAGE_UNIT)
+            batch.program["image"] = IMAGE_UNIT
+        batch.vertex_array.draw_instanced(Primitive.TRIANGLES, None, instances)
+        return batch.buffers[1].nbytes // 12 * instances
+
+    def _upload(self, batch: Batch, agents: InstanceList) -> _Drawn:
+        program = self._plain
+        image = None
+        if batch.image is not None and self._textured is not None:
+            program = self._textured
+            image = _picture(batch.image)
+        vertices = Buffer(batch.vertices)
+        indices = Buffer(batch.indices)
+        vertex_array = VertexArray(
+            program,
+            [VertexInput(vertices, VERTEX, normalised=("color",)), agents.input()],
+            indices,
+        )
+        return _Drawn(program, vertex_array, (vertices, indices), image, batch.double_sided)
+
+    def delete(self) -> None:
+        """Delete everything on the GPU."""
+        for level in self._levels:
+            for batch in level:
+                batch.vertex_array.delete()
+                for buffer in batch.buffers:
+                    buffer.delete()
+                if batch.image is not None:
+                    batch.image.delete()
+        for agents in self.lists:
+            agents.buffer.delete()
+        self._plain.delete()
+        if self._textured is not None:
+            self._textured.delete()
+
+
+def _picture(image: NDArray[np.uint8]) -> Texture2D:
+    height, width = image.shape[:2]
+    levels = int(max(width, height)).bit_length()
+    texture = Texture2D(
+        (width, height), TextureFormat.SRGB8_ALPHA8, levels=levels, filter="linear", wrap="repeat"
+    )
+    texture.write(image)
+    texture.build_mipmaps()
+    return texture

@@ -1,0 +1,283 @@
+"""Animation streams: motions that are evaluated once a pose tick and shared by many agents.
+
+*Streams 2017*, 4.1: a stream has a controller, the pose of the current tick and a ring of its last
+M poses, so that agents on one stream look different by playing some poses behind its head. Here a
+stream is a row of columns, and all running streams are evaluated together.
+
+A stream that stops keeps its head: its agents hold. Running again, a seek or another clip is a
+*cut*: `valid` starts again at one, and no pose from before is shown or mixed any more.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..animation.clip_bank import ClipBank
+from ..animation.kinematics import Kinematics
+from ..animation.skeleton import Skeleton
+from .store import PoseStore
+
+POSE_RATE = 30.0
+"""Pose ticks a second."""
+
+
+class Stream(NamedTuple):
+    """Handle of one stream: stale once its row was given to another."""
+
+    row: int
+    generation: int
+
+
+class StreamPool:
+    """Streams of one skeleton, with the store of their poses.
+
+    Parameters
+    ----------
+    skeleton
+        All streams animate it.
+    bank
+        The clips that streams can play.
+    capacity
+        Stream rows, 1 to 16384. A power of two up to 256 keeps a pool's textures small.
+    history
+        M, the longest history of any stream in poses, 2 to 254.
+    markers
+        (K,) joints whose positions the store keeps for the farthest level of detail.
+
+    Attributes
+    ----------
+    head
+        (R,) int64: pose tick of each stream's newest pose.
+    valid
+        (R,) int32: poses since the last cut, at most the stream's history; 0 before the first.
+    history
+        (R,) int32: M of each stream.
+    generation
+        (R,) int32: grows when a row is given to another stream.
+    running, alive
+        (R,) bool.
+    clip, time, speed, looping
+        (R,) the clip controller: index in `bank`, seconds since its start, playback speed,
+        whether it wraps.
+    """
+
+    __slots__ = (
+        "_kinematics",
+        "_marker_joints",
+        "_pending",
+        "alive",
+        "bank",
+        "clip",
+        "generation",
+        "head",
+        "history",
+        "looping",
+        "running",
+        "skeleton",
+        "speed",
+        "store",
+        "time",
+        "valid",
+    )
+
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        bank: ClipBank,
+        *,
+        capacity: int = 256,
+        history: int = 60,
+        markers: NDArray[np.int64] | None = None,
+    ) -> None:
+        if not 1 <= capacity <= 16384:
+            raise ValueError(f"capacity is {capacity}, expected 1 to 16384 streams")
+        self.skeleton = skeleton
+        self.bank = bank
+        self._marker_joints = np.zeros(0, np.int64) if markers is None else markers
+        self.store = PoseStore(
+            skeleton.joint_count, capacity, history, markers=len(self._marker_joints)
+        )
+        bind = bind_positions(skeleton)
+        self.store.write_static(0, np.eye(3, 4, dtype=np.float32), bind[self._marker_joints])
+        self._kinematics: Kinematics | None = None
+        self._pending = np.zeros(0, np.int64)
+        self.head = np.zeros(capacity, np.int64)
+        self.valid = np.zeros(capacity, np.int32)
+        self.history = np.full(capacity, history, np.int32)
+        self.generation = np.zeros(capacity, np.int32)
+        self.running = np.zeros(capacity, np.bool_)
+        self.alive = np.zeros(capacity, np.bool_)
+        self.clip = np.zeros(capacity, np.int64)
+        self.time = np.zeros(capacity, np.float64)
+        self.speed = np.ones(capacity, np.float64)
+        self.looping = np.ones(capacity, np.bool_)
+
+    def add(
+        self,
+        clip: int | str,
+        *,
+        time: float = 0.0,
+        speed: float = 1.0,
+        looping: bool | None = None,
+        history: int | None = None,
+    ) -> Stream:
+        """Start a stream on a free row; its first pose is the clip at `time`, at the next tick.
+
+        Parameters
+        ----------
+        clip
+            Index or name in the bank.
+        time, speed
+            Seconds since the clip's start, and how fast it plays (negative plays backwards).
+        looping
+            Whether time wraps at the clip's end; as the clip says if None.
+        history
+            M of this stream, at most the pool's.
+
+        Raises
+        ------
+        ValueError
+            For an unknown clip, a value that is not finite, or when no row is free.
+        """
+        index = self._clip_index(clip)
+        _check_finite(time=time, speed=speed)
+        longest = self.store.capacity - 2
+        if history is not None and not 2 <= history <= longest:
+            raise ValueError(f"history is {history}, expected 2 to {longest} poses in this pool")
+        free = np.flatnonzero(~self.alive)
+        if not len(free):
+            raise ValueError(f"all {len(self.alive)} stream rows are in use; remove a stream first")
+        row = int(free[0])
+        self.alive[row] = self.running[row] = True
+        self.generation[row] += 1
+        if history is not None:
+            self.history[row] = history
+        self.clip[row], self.time[row], self.speed[row] = index, time, speed
+        self.looping[row] = self.bank.looping[index] if looping is None else looping
+        self._cut(row)
+        return Stream(row, int(self.generation[row]))
+
+    def remove(self, stream: Stream) -> None:
+        """Give a stream's row back; agents still on it show the bind pose until they are moved."""
+        row = self.row(stream)
+        self.alive[row] = self.running[row] = False
+        self._cut(row)
+
+    def stop(self, stream: Stream) -> None:
+        """Stop evaluating a stream; its head freezes and its agents hold."""
+        self.running[self.row(stream)] = False
+        self.store.mark_streams()
+
+    def run(self, stream: Stream) -> None:
+        """Run a stopped stream again: a cut, after which it goes on from its controller's time."""
+        row = self.row(stream)
+        if not self.running[row]:
+            self.running[row] = True
+            self._cut(row)
+
+    def seek(self, stream: Stream, time: float) -> None:
+        """Set the controller's time in seconds: a cut."""
+        _check_finite(time=time)
+        row = self.row(stream)
+        self.time[row] = time
+        self._cut(row)
+
+    def play(self, stream: Stream, clip: int | str, *, time: float = 0.0) -> None:
+        """Put another clip on a stream: a cut."""
+        index = self._clip_index(clip)
+        self.seek(stream, time)
+        row = self.row(stream)
+        self.clip[row], self.looping[row] = index, self.bank.looping[index]
+
+    def row(self, stream: Stream) -> int:
+        """Row of a live stream.
+
+        Raises
+        ------
+        ValueError
+            If the handle is stale or was never this pool's.
+        """
+        row = stream.row
+        if not 0 <= row < len(self.alive) or not self.alive[row]:
+            raise ValueError(f"stream {row} is not alive")
+        if stream.generation != self.generation[row]:
+            raise ValueError(f"stream {row} was removed and its row given to another stream")
+        return row
+
+    def evaluate(self, tick: int) -> None:
+        """Evaluate all running streams and write their poses into the slice of pose tick `tick`.
+
+        Nobody sees the poses before `commit`.
+
+        Parameters
+        ----------
+        tick
+            Pose tick, one more than at the last call.
+        """
+        rows = self._pending = np.flatnonzero(self.running)
+        if not len(rows):
+            return
+        workspace = self._workspace(len(rows))
+        whole = len(rows) == len(self.running)
+        # A stream's first pose after a cut is the pose at its time; later ones have advanced.
+        advanced = self.valid[rows] > 0
+        self.time[rows] += np.where(advanced, self.speed[rows] / POSE_RATE, 0.0)
+        self._wrap_time(rows)
+        pose = self.bank.sample(
+            self.clip[rows], self.time[rows], self.looping[rows], workspace.mixed, workspace.scratch
+        )
+        target = self.store.ring[self.store.slice_of(tick)]
+        workspace.evaluate(pose, target, None if whole else rows)
+        if len(self._marker_joints):
+            markers = workspace.joint_positions(self._marker_joints)
+            self.store.ring_markers[self.store.slice_of(tick), rows, :, :3] = markers
+
+    def commit(self, tick: int) -> None:
+        """Make the poses of the last `evaluate` the heads of their streams."""
+        rows = self._pending
+        # A row that was cut, stopped or removed in between has nothing to show for this tick.
+        rows = rows[self.running[rows]]
+        if len(rows):
+            self.head[rows] = tick
+            self.valid[rows] = np.minimum(self.valid[rows] + 1, self.history[rows])
+            self.store.mark_slice(tick)
+            self.store.mark_streams()
+
+    def _workspace(self, streams: int) -> Kinematics:
+        if self._kinematics is None or self._kinematics.streams != streams:
+            self._kinematics = Kinematics(self.skeleton, streams)
+        return self._kinematics
+
+    def _wrap_time(self, rows: NDArray[np.int64]) -> None:
+        """Keep looping controllers within one period, so that hours lose no precision."""
+        duration = self.bank.duration[self.clip[rows]]
+        wrap = self.looping[rows] & (duration > 0)
+        self.time[rows[wrap]] = np.mod(self.time[rows[wrap]], duration[wrap])
+
+    def _cut(self, row: int) -> None:
+        self.valid[row] = 0
+        self.store.mark_streams()
+
+    def _clip_index(self, clip: int | str) -> int:
+        if isinstance(clip, str):
+            return self.bank.index(clip)
+        if not 0 <= clip < len(self.bank.clips):
+            raise ValueError(f"clip is {clip}, expected 0 to {len(self.bank.clips) - 1}")
+        return clip
+
+
+def bind_positions(skeleton: Skeleton) -> NDArray[np.float32]:
+    """(J, 3) model-space joint positions of the bind pose, metres."""
+    matrices = np.zeros((skeleton.joint_count, 4, 4))
+    matrices[:, :3] = skeleton.inverse_bind
+    matrices[:, 3, 3] = 1.0
+    return np.linalg.inv(matrices)[:, :3, 3].astype(np.float32)
+
+
+def _check_finite(**values: float) -> None:
+    for name, value in values.items():
+        if not np.isfinite(value):
+            raise ValueError(f"{name} is {value}, expected a finite number")

@@ -1,0 +1,128 @@
+"""The pose store: every palette that an agent can show, under one index.
+
+Rows 0 to ``stream_rows - 1`` are streams; each has a ring of `capacity` slices, and slice
+``tick mod capacity`` holds the pose of that pose tick. Rows from ``stream_rows`` on are static: one
+palette each, no ring. Static row 0 is the bind pose, which agents without a stream show. The
+drawing side mirrors the arrays; `take_dirty` says what changed since it last asked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAX_CAPACITY = 256
+
+
+def ring_capacity(history: int) -> int:
+    """Smallest power of two that holds `history` poses and the two being written or mixed.
+
+    60 poses need a ring of 64; 254, the most that is possible, need 256.
+
+    Raises
+    ------
+    ValueError
+        If `history` is not between 2 and 254.
+    """
+    if not 2 <= history <= MAX_CAPACITY - 2:
+        raise ValueError(f"history is {history}, expected 2 to {MAX_CAPACITY - 2} poses")
+    return 1 << (history + 1).bit_length()
+
+
+@dataclass(slots=True)
+class DirtyPoses:
+    """What the drawing side has to copy: ring slices, static rows, and the stream table."""
+
+    slices: set[int] = field(default_factory=set)
+    static_rows: set[int] = field(default_factory=set)
+    streams: bool = True
+
+
+class PoseStore:
+    """Palettes of one skeleton's streams and static poses.
+
+    Parameters
+    ----------
+    joints
+        Joints J of the skeleton.
+    stream_rows
+        How many streams have a ring.
+    history
+        The longest history of any stream, in poses.
+    static_rows
+        Static rows, the bind pose included.
+    markers
+        Joint positions K kept beside each palette for the farthest level of detail.
+
+    Attributes
+    ----------
+    ring
+        (capacity, stream_rows, J, 3, 4) float32: a slice is contiguous, for one upload.
+    static
+        (static_rows, J, 3, 4) float32.
+    ring_markers, static_markers
+        (capacity, stream_rows, K, 4) and (static_rows, K, 4) float32, model space, w unused.
+    """
+
+    __slots__ = (
+        "_dirty",
+        "capacity",
+        "ring",
+        "ring_markers",
+        "static",
+        "static_markers",
+        "stream_rows",
+    )
+
+    def __init__(
+        self,
+        joints: int,
+        stream_rows: int,
+        history: int,
+        static_rows: int = 1,
+        markers: int = 0,
+    ) -> None:
+        self.capacity = ring_capacity(history)
+        self.stream_rows = stream_rows
+        identity = np.eye(3, 4, dtype=np.float32)
+        self.ring = np.empty((self.capacity, stream_rows, joints, 3, 4), dtype=np.float32)
+        self.ring[...] = identity
+        self.static = np.empty((static_rows, joints, 3, 4), dtype=np.float32)
+        self.static[...] = identity
+        self.ring_markers = np.zeros((self.capacity, stream_rows, markers, 4), dtype=np.float32)
+        self.static_markers = np.zeros((static_rows, markers, 4), dtype=np.float32)
+        self._dirty = DirtyPoses(set(range(self.capacity)), set(range(static_rows)))
+
+    @property
+    def bind_row(self) -> int:
+        """Unified index of the bind pose."""
+        return self.stream_rows
+
+    def slice_of(self, tick: int) -> int:
+        """Ring slice that holds the pose of pose tick `tick`."""
+        return tick % self.capacity
+
+    def mark_slice(self, tick: int) -> None:
+        """Record that the slice of `tick` changed."""
+        self._dirty.slices.add(self.slice_of(tick))
+
+    def mark_streams(self) -> None:
+        """Record that heads, valid counts or states of streams changed."""
+        self._dirty.streams = True
+
+    def write_static(
+        self, row: int, palette: NDArray[np.float32], markers: NDArray[np.float32] | None = None
+    ) -> None:
+        """Write static row `row` (0 is the bind pose): a (J, 3, 4) palette, (K, 3) markers."""
+        self.static[row] = palette
+        if markers is not None:
+            self.static_markers[row, :, :3] = markers
+        self._dirty.static_rows.add(row)
+
+    def take_dirty(self) -> DirtyPoses:
+        """What changed since the last call; the record starts anew."""
+        taken = self._dirty
+        self._dirty = DirtyPoses(streams=False)
+        return taken

@@ -1,0 +1,1 @@
+"""GLSL files, one folder a pass; shared code in ``lib``."""

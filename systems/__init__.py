@@ -1,0 +1,1 @@
+"""What happens each tick and each frame: one esper processor a file."""

@@ -1,0 +1,36 @@
+"""Culling and level of detail."""
+
+from __future__ import annotations
+
+import esper
+
+from ..components import Detail, Placement, Seat, View
+from ..engine.clock import Clock
+from ..engine.crowd.detail import select_detail
+from ..engine.crowd.figure import Figure
+from .query import crowds
+
+
+class DetailSystem(esper.Processor):
+    """Chooses which agents are drawn at which level; needs one entity with a `View`.
+
+    Parameters
+    ----------
+    levels
+        Whether distant agents are drawn more coarsely.
+    """
+
+    def __init__(self, *, levels: bool = True) -> None:
+        self._levels = levels
+
+    def process(self, clock: Clock) -> None:
+        """One frame."""
+        views = crowds(View)
+        if not views:
+            return
+        view = views[0][1][0]
+        for entity, (detail, placement, seat) in crowds(Detail, Placement, Seat):
+            figure = esper.component_for_entity(entity, Figure)
+            select_detail(
+                detail, placement, seat.occupied, figure.height, view, levels=self._levels
+            )

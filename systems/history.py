@@ -1,0 +1,19 @@
+"""This tick's poses become the heads of their streams."""
+
+from __future__ import annotations
+
+import esper
+
+from ..engine.clock import Clock
+from ..engine.streams.pool import StreamPool
+from .query import crowds
+
+
+class HistorySystem(esper.Processor):
+    """Commits the tick in every pose store and records what drawing has to copy."""
+
+    def process(self, clock: Clock) -> None:
+        """One base tick; works at pose ticks."""
+        if clock.is_pose_tick:
+            for _, (pool,) in crowds(StreamPool):
+                pool.commit(clock.pose_tick)

@@ -1,0 +1,16 @@
+"""The order of a frame, in one place."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Phase(IntEnum):
+    """esper priorities of the systems: higher runs first."""
+
+    BEHAVIOUR = 70
+    TRANSITIONS = 60
+    CONTROLLERS = 50
+    HISTORY = 40
+    DETAIL = 30
+    RENDER = 20

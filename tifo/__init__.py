@@ -1,0 +1,3 @@
+"""tifo fills a stadium with animated spectators."""
+
+__version__ = "0.1.0"
