@@ -76,7 +76,7 @@ class FreeCamera:
     yaw: float
     pitch: float
     distance: float
-    fov: float = math.radians(42.0)
+    fov: float = math.radians(45.0)
     mode: CameraMode = CameraMode.ORBIT
 
     @classmethod

@@ -149,7 +149,7 @@ def spawn_crowd(
     figure = make_figure(character)
     occupied = occupancy_mask(plan, spec, rng_seats)
     side = assign_sides(plan, spec, rng_sides)
-    count = plan.position.shape[1]
+    count = plan.count
     crowd = Crowd(
         entity=0,
         spec=spec,
@@ -187,7 +187,7 @@ def spawn_crowd(
 
 
 def _place(plan: SeatPlan, figure: Figure, rng: np.random.Generator) -> Placement:
-    count = plan.position.shape[1]
+    count = plan.count
     size = rng.normal(1.0, 0.045, count).clip(0.88, 1.12)
     turn = rng.normal(0.0, 0.12, count).clip(-0.35, 0.35)
     return Placement(

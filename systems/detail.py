@@ -18,9 +18,15 @@ class DetailSystem(esper.Processor):
     ----------
     levels
         Whether distant agents are drawn more coarsely.
+
+    Attributes
+    ----------
+    coarseness
+        Factor on the sizes at which agents change level; see `select_detail`.
     """
 
     def __init__(self, *, levels: bool = True) -> None:
+        self.coarseness = 1.0
         self._levels = levels
 
     def process(self, clock: Clock) -> None:
@@ -32,5 +38,11 @@ class DetailSystem(esper.Processor):
         for entity, (detail, placement, seat) in crowds(Detail, Placement, Seat):
             figure = esper.component_for_entity(entity, Figure)
             select_detail(
-                detail, placement, seat.occupied, figure.height, view, levels=self._levels
+                detail,
+                placement,
+                seat.occupied,
+                figure.height,
+                view,
+                levels=self._levels,
+                coarseness=self.coarseness,
             )

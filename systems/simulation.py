@@ -59,9 +59,8 @@ class Simulation:
         self.plan: SeatPlan = build_seats(self.spec)
         if character is None:
             character = character_of(self.spec)
-        self.schedule = Schedule(
-            self.clock, tick_systems(self.spec.seed), [DetailSystem(levels=self.spec.lod)]
-        )
+        self.detail = DetailSystem(levels=self.spec.lod)
+        self.schedule = Schedule(self.clock, tick_systems(self.spec.seed), [self.detail])
         with self.active():
             self.crowd: Crowd = spawn_crowd(self.spec, self.plan, character, offsets=offsets)
             esper.add_processor(self.schedule)
@@ -111,19 +110,25 @@ class Simulation:
         esper.delete_world(self.world)
 
 
-def character_of(spec: CrowdSpec) -> Character:
+def character_of(spec: CrowdSpec, scale: float | None = None) -> Character:
     """The character that a spec names, with its motions; the built-in spectator if it names none.
+
+    A spec that names BVH motions and no character gets the figure of bones of the first of them.
+
+    Parameters
+    ----------
+    spec
+        Names the files.
+    scale
+        Metres a unit of BVH files; guessed if None.
 
     Raises
     ------
     AssetError
         If a file can't be used.
     """
-    character = (
-        load_character(spec.character)
-        if spec.character
-        else __import__("importlib")
-        .import_module("tifo.engine.assets.spectator")
-        .builtin_spectator()
-    )
-    return add_motions(character, spec.motions) if spec.motions else character
+    file, motions = spec.character, spec.motions
+    if not file and motions and motions[0].lower().endswith(".bvh"):
+        file, motions = motions[0], motions[1:]
+    character = load_character(file, scale) if file else builtin_spectator()
+    return add_motions(character, motions, scale) if motions else character

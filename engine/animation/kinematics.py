@@ -46,11 +46,10 @@ class _Level:
     products: Array
     product_terms: tuple[Array, ...]
     factor: Array
-    palette: Array
-    palette_by_stream: Array
-    """(S, j, 3, 4) view of `palette`."""
+    model_rows: Array
+    """(3, j, S, 4) view of `model`: rows of matrices, for the product with the inverse bind."""
     inverse_bind: Array
-    """(3, 4, j, 1)"""
+    """(j, 4, 4)"""
 
 
 class Kinematics:
@@ -64,7 +63,16 @@ class Kinematics:
         How many poses are evaluated together, S.
     """
 
-    __slots__ = ("_levels", "_pose", "_rotated_bind", "layout", "mixed", "scratch", "streams")
+    __slots__ = (
+        "_joints",
+        "_levels",
+        "_palettes",
+        "_pose",
+        "layout",
+        "mixed",
+        "scratch",
+        "streams",
+    )
 
     def __init__(self, skeleton: Skeleton, streams: int) -> None:
         self.streams = streams
@@ -73,9 +81,8 @@ class Kinematics:
         self.mixed = np.empty((streams, count), dtype=np.float32)
         self.scratch = np.empty_like(self.mixed)
         self._pose = np.empty((count, streams), dtype=np.float32)
-        self._rotated_bind = not np.allclose(
-            skeleton.inverse_bind[:, :, :3], np.eye(3, dtype=np.float32), rtol=0, atol=1e-7
-        )
+        self._palettes: Array | None = None
+        self._joints = skeleton.joint_count
         self._levels = _make_levels(skeleton, self.layout, self._pose, streams)
 
     def evaluate(self, pose: Array, palettes: Array, rows: NDArray[np.int64] | None = None) -> None:
@@ -93,21 +100,24 @@ class Kinematics:
         """
         self._pose[...] = pose.T
         previous: Array | None = None
-        target = palettes[: self.streams] if rows is None else palettes
+        target = palettes[: self.streams] if rows is None else self._own_palettes()
         for level in self._levels:
             _local_matrices(level)
             if previous is not None and level.parents is not None:
                 np.take(previous, level.parents, axis=2, out=level.parent_model, mode="clip")
                 _multiply(level.parent_model, level.local, level.model, level.term)
-            if self._rotated_bind:
-                _multiply(level.model, level.inverse_bind, level.palette, level.term)
-            else:
-                _translate(level)
-            if rows is None:
-                target[:, level.joints] = level.palette_by_stream
-            else:
-                target[rows, level.joints] = level.palette_by_stream
+            # One small matrix product a joint, written where the palettes are wanted: half the
+            # time of multiplying planes and then turning them round.
+            into = target[:, level.joints].transpose(2, 1, 0, 3)
+            np.matmul(level.model_rows, level.inverse_bind, out=into)
             previous = level.model
+        if rows is not None:
+            palettes[rows] = target
+
+    def _own_palettes(self) -> Array:
+        if self._palettes is None:
+            self._palettes = np.empty((self.streams, self._joints, 3, 4), dtype=np.float32)
+        return self._palettes
 
     def joint_positions(self, joints: NDArray[np.int64]) -> Array:
         """Model-space positions of some joints after `evaluate`.
@@ -143,7 +153,6 @@ def _make_levels(
             ("squares", 4),
             ("products", 6),
             ("factor", 1),
-            ("palette", 12),
         )
     }
     made = []
@@ -159,11 +168,10 @@ def _make_levels(
         block = pose[rows].reshape(CHANNELS, j, streams)
         model = np.empty((3, 4, j, streams), dtype=np.float32)
         local = model if number == 0 else plane("local", 3, 4)
-        squares, products, palette = (
-            plane("squares", 4),
-            plane("products", 6),
-            plane("palette", 3, 4),
-        )
+        squares, products = plane("squares", 4), plane("products", 6)
+        inverse_bind = np.zeros((j, 4, 4), dtype=np.float32)
+        inverse_bind[:, :3] = skeleton.inverse_bind[joints]
+        inverse_bind[:, 3, 3] = 1.0
         parents = None
         if number > 0:
             parents = (skeleton.parents[joints] - skeleton.levels[number - 1].start).astype(
@@ -189,11 +197,8 @@ def _make_levels(
                 products=products,
                 product_terms=tuple(products),
                 factor=plane("factor"),
-                palette=palette,
-                palette_by_stream=palette.transpose(3, 2, 0, 1),
-                inverse_bind=np.ascontiguousarray(
-                    skeleton.inverse_bind[joints].transpose(1, 2, 0)[..., None]
-                ),
+                model_rows=model.transpose(0, 2, 3, 1),
+                inverse_bind=inverse_bind,
             )
         )
     return tuple(made)
@@ -235,21 +240,10 @@ def _local_matrices(level: _Level) -> None:
 
 
 def _multiply(a: Array, b: Array, out: Array, term: Array) -> None:
-    """Affine product over planes: (3, 4, j, S) times (3, 4, j, S or 1)."""
+    """Affine product over planes, (3, 4, j, S) each."""
     np.multiply(a[:, 0, None], b[None, 0], out=out)
     np.multiply(a[:, 1, None], b[None, 1], out=term)
     np.add(out, term, out=out)
     np.multiply(a[:, 2, None], b[None, 2], out=term)
     np.add(out, term, out=out)
     np.add(out[:, 3], a[:, 3], out=out[:, 3])
-
-
-def _translate(level: _Level) -> None:
-    """Palettes of joints whose bind pose is not rotated: only the last column changes."""
-    palette, model, term = level.palette, level.model, level.term
-    palette[:, :3] = model[:, :3]
-    offset = level.inverse_bind[:, 3]
-    np.multiply(model[:, :3], offset, out=term[:, :3])
-    np.add(term[:, 0], term[:, 1], out=palette[:, 3])
-    np.add(palette[:, 3], term[:, 2], out=palette[:, 3])
-    np.add(palette[:, 3], model[:, 3], out=palette[:, 3])

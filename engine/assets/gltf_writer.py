@@ -104,7 +104,7 @@ def character_to_glb(character: Character) -> bytes:
         "scene": 0,
     }
     roots = [index for index, parent in enumerate(skeleton.parents) if parent < 0]
-    meshes = []
+    meshes: list[dict[str, Any]] = []
     for level, members in enumerate((character.meshes, *character.lower_levels)):
         for mesh in members:
             name = level_name(mesh.name, level)

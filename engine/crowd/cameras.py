@@ -28,7 +28,8 @@ def _close(plan: SeatPlan) -> tuple[Point, Point]:
     """Before the middle of a row in the lower third of the far or only stand."""
     tier = plan.structure.tiers[0]
     rows = len(tier.offsets)
-    row = min(rows - 1, max(1, round(0.3 * rows)))
+    # A low stand fits the picture whole, so its first row shows its feet.
+    row = 0 if rows <= 4 else round(0.3 * rows)
     in_row = np.flatnonzero(plan.row == row)
     if not len(in_row):
         in_row = np.flatnonzero(plan.row == plan.row.min())

@@ -61,6 +61,7 @@ def select_detail(
     view: View,
     *,
     levels: bool,
+    coarseness: float = 1.0,
 ) -> None:
     """Sort the agents that are in view by level of detail.
 
@@ -76,13 +77,15 @@ def select_detail(
         The camera.
     levels
         Whether distant agents are drawn more coarsely; if not, all are drawn as near ones.
+    coarseness
+        Factor on `MESH_PIXELS`: 2 draws an agent as coarsely as one half as tall otherwise.
     """
     planes = frustum_planes(view.projection @ view.view)
     radius = placement.scale * np.float32(0.75 * height)
-    # The middle of the body is half the height above the feet.
-    offset = planes[:, 3:] + planes[:, 1:2] * np.float32(0.5 * height)
+    # The sphere's middle is half a height above the feet: two thirds of its radius.
     distance = planes[:, :3] @ placement.position
-    distance += offset
+    distance += planes[:, 3:]
+    distance += planes[:, 1:2] * (radius * np.float32(2.0 / 3.0))
     inside = distance.min(axis=0) >= -radius
     inside &= present
     agents = np.flatnonzero(inside).astype(np.uint32)
@@ -92,5 +95,5 @@ def select_detail(
     forward = -view.view[2]
     depth = forward[:3] @ placement.position[:, agents] + forward[3]
     pixels = pixel_heights(placement.scale[agents], height, view, depth)
-    level = np.searchsorted(-np.array(MESH_PIXELS, np.float32), -pixels)
+    level = np.searchsorted(-coarseness * np.array(MESH_PIXELS, np.float32), -pixels)
     detail.agents = tuple(agents[level == number] for number in Level)

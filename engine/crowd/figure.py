@@ -26,8 +26,8 @@ _NAMES = {
     "foot": (r"^(foot|ankle)$", r"foot|ankle"),
 }
 _SIDES = {
-    "_l": (r"^l[._ ]|[._ ]l$|left|(?<=[a-z])L$|^l(?=[A-Z])", 1.0),
-    "_r": (r"^r[._ ]|[._ ]r$|right|(?<=[a-z])R$|^r(?=[A-Z])", -1.0),
+    "_l": r"(^|[._ -])[lL](?=[._ -]|$)|[Ll]eft|LEFT|(?<=[a-z0-9])L$|^[lL](?=[A-Z][a-z])",
+    "_r": r"(^|[._ -])[rR](?=[._ -]|$)|[Rr]ight|RIGHT|(?<=[a-z0-9])R$|^[rR](?=[A-Z][a-z])",
 }
 
 
@@ -71,10 +71,10 @@ def _by_name(skeleton: Skeleton, base: str, side: str | None) -> int | None:
         for joint, name in enumerate(skeleton.names):
             bare = name.rpartition(":")[2]
             if side is not None:
-                if not re.search(_SIDES[side][0], bare, re.IGNORECASE if "eft" in bare else 0):
+                bare, found = re.subn(_SIDES[side], "", bare)
+                if not found:
                     continue
-                bare = re.sub(r"^[lrLR][._ ]|[._ ][lrLR]$|[Ll]eft|[Rr]ight|[LR]$", "", bare)
-            if re.search(pattern, bare.strip("._ "), re.IGNORECASE):
+            if re.search(pattern, bare.strip("._ -"), re.IGNORECASE):
                 return joint
     return None
 

@@ -48,7 +48,9 @@ _PATTERNS = (
     _Pattern(r"sit\w*idle|^sitting$|sit_idle", Role.CALM, 60.0),
     _Pattern(r"idle|stand", Role.CALM, 10.0),
 )
-_REJECTED = re.compile(r"2h_|1h_|block|death|unarmed|dualwield|spell|lie_|pose", re.IGNORECASE)
+_REJECTED = re.compile(
+    r"2h_|1h_|block|death|unarmed|dualwield|spell|lie_|pose|jump_(idle|start|land)", re.IGNORECASE
+)
 _STAND_FOR: dict[Role, tuple[Role, ...]] = {
     Role.CALM: (Role.APPLAUD, Role.CHEER),
     Role.APPLAUD: (Role.CHEER,),

@@ -129,7 +129,7 @@ def declared_uniforms(text: str) -> frozenset[str]:
 
 
 def as_uniform(name: str, kind: ShaderType, size: int, value: Any) -> NDArray[Any]:
-    """Return a value as the contiguous (n, components) array that the GL setter takes.
+    """Return a value copied to the (n, components) array that the GL setter takes.
 
     Matrices come out column by column.
 
@@ -171,7 +171,7 @@ def as_uniform(name: str, kind: ShaderType, size: int, value: Any) -> NDArray[An
         raise ValueError(f"uniform '{name}' takes shape {one}, or up to {size}; got {shape}")
     if not 1 <= len(flat) <= size:
         raise ValueError(f"uniform '{name}' holds 1 to {size} elements, got {len(flat)}")
-    return np.ascontiguousarray(flat, kind.dtype)
+    return np.array(flat, kind.dtype, order="C")
 
 
 def _active(program: int, count: str, getter: str) -> list[tuple[str, ShaderType, int]]:

@@ -55,7 +55,15 @@ class Program(GLObject):
     >>> program["palette"] = 2  # texture unit
     """
 
-    __slots__ = ("_attributes", "_blocks", "_declared", "_label", "_outputs", "_uniforms")
+    __slots__ = (
+        "_attributes",
+        "_blocks",
+        "_declared",
+        "_label",
+        "_outputs",
+        "_setters",
+        "_uniforms",
+    )
 
     def __init__(
         self,
@@ -78,6 +86,9 @@ class Program(GLObject):
         super().__init__("program", link(stages, self._label, feedback))
         self._attributes = MappingProxyType(read_attributes(self._name))
         self._uniforms = MappingProxyType(read_uniforms(self._name))
+        self._setters = {
+            name: getattr(gl, uniform.type.setter) for name, uniform in self._uniforms.items()
+        }
         self._blocks = MappingProxyType(read_blocks(self._name))
         self._outputs = read_outputs(self._name) if feedback else ()
 
@@ -136,11 +147,12 @@ class Program(GLObject):
         kind = uniform.type
         data = as_uniform(name, kind, uniform.size, value)
         self.use()
-        pointer = data.ctypes.data_as(_POINTERS[data.dtype.char])
+        pointer = (_C_TYPES[kind.base] * data.size).from_buffer(data)
+        setter = self._setters[name]
         if kind.columns > 1:
-            getattr(gl, kind.setter)(uniform.location, len(data), False, pointer)
+            setter(uniform.location, len(data), False, pointer)
         else:
-            getattr(gl, kind.setter)(uniform.location, len(data), pointer)
+            setter(uniform.location, len(data), pointer)
 
     def __setitem__(self, name: str, value: Any) -> None:
         """Set a uniform; see `set`."""
@@ -171,10 +183,12 @@ class Program(GLObject):
         raise KeyError(f"{self._label} declares no {what} '{name}'{hint}")
 
 
-_POINTERS: dict[str, Any] = {
-    "f": ctypes.POINTER(ctypes.c_float),
-    "i": ctypes.POINTER(ctypes.c_int),
-    "I": ctypes.POINTER(ctypes.c_uint),
+_C_TYPES: dict[str, Any] = {
+    "float": ctypes.c_float,
+    "int": ctypes.c_int,
+    "bool": ctypes.c_int,
+    "sampler": ctypes.c_int,
+    "uint": ctypes.c_uint,
 }
 
 

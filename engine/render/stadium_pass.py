@@ -52,7 +52,7 @@ class StadiumPass:
     def draw(self, frame: Frame) -> None:
         """Draw into the bound framebuffer, the sky last where nothing else is."""
         frame.apply(self._program)
-        opaque(cull=False)
+        opaque()
         self._vertex_array.draw()
         frame.apply(self._sky)
         opaque(cull=False, depth_write=False)

@@ -66,6 +66,7 @@ class StreamPool:
 
     __slots__ = (
         "_kinematics",
+        "_longest",
         "_marker_joints",
         "_pending",
         "alive",
@@ -104,6 +105,7 @@ class StreamPool:
         self.store.write_static(0, np.eye(3, 4, dtype=np.float32), bind[self._marker_joints])
         self._kinematics: Kinematics | None = None
         self._pending = np.zeros(0, np.int64)
+        self._longest = history
         self.head = np.zeros(capacity, np.int64)
         self.valid = np.zeros(capacity, np.int32)
         self.history = np.full(capacity, history, np.int32)
@@ -135,7 +137,7 @@ class StreamPool:
         looping
             Whether time wraps at the clip's end; as the clip says if None.
         history
-            M of this stream, at most the pool's.
+            M of this stream, at most what the pool's ring has room for; the pool's own if None.
 
         Raises
         ------
@@ -153,8 +155,7 @@ class StreamPool:
         row = int(free[0])
         self.alive[row] = self.running[row] = True
         self.generation[row] += 1
-        if history is not None:
-            self.history[row] = history
+        self.history[row] = self._longest if history is None else history
         self.clip[row], self.time[row], self.speed[row] = index, time, speed
         self.looping[row] = self.bank.looping[index] if looping is None else looping
         self._cut(row)
@@ -168,7 +169,9 @@ class StreamPool:
 
     def stop(self, stream: Stream) -> None:
         """Stop evaluating a stream; its head freezes and its agents hold."""
-        self.running[self.row(stream)] = False
+        row = self.row(stream)
+        self.running[row] = False
+        self._drop_pending(row)
         self.store.mark_streams()
 
     def run(self, stream: Stream) -> None:
@@ -236,10 +239,11 @@ class StreamPool:
             self.store.ring_markers[self.store.slice_of(tick), rows, :, :3] = markers
 
     def commit(self, tick: int) -> None:
-        """Make the poses of the last `evaluate` the heads of their streams."""
-        rows = self._pending
-        # A row that was cut, stopped or removed in between has nothing to show for this tick.
-        rows = rows[self.running[rows]]
+        """Make the poses of the last `evaluate` the heads of their streams.
+
+        A stream that was cut, stopped or removed in between has nothing to show for this tick.
+        """
+        rows, self._pending = self._pending, self._pending[:0]
         if len(rows):
             self.head[rows] = tick
             self.valid[rows] = np.minimum(self.valid[rows] + 1, self.history[rows])
@@ -259,7 +263,11 @@ class StreamPool:
 
     def _cut(self, row: int) -> None:
         self.valid[row] = 0
+        self._drop_pending(row)
         self.store.mark_streams()
+
+    def _drop_pending(self, row: int) -> None:
+        self._pending = self._pending[self._pending != row]
 
     def _clip_index(self, clip: int | str) -> int:
         if isinstance(clip, str):

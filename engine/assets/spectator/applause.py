@@ -12,7 +12,7 @@ from .rotations import Array
 
 CLAPS = 8
 CLAP_SECONDS = 0.3
-TOUCH = 0.0205
+TOUCH = 0.0225
 """Half the distance of the wrists, metres, when the palms meet."""
 
 
@@ -59,4 +59,5 @@ def add_claps(p: Performance, height: float) -> Performance:
 
 
 def _blend(near: tuple[float, ...], far: tuple[float, ...], share: Array) -> Array:
-    return np.array(near) + share[:, None] * (np.array(far) - np.array(near))
+    result: Array = np.array(near) + share[:, None] * (np.array(far) - np.array(near))
+    return result

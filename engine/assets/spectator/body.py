@@ -20,6 +20,9 @@ SLEEVE_END = 0.172
 SHIRT_HEM = 0.910
 TROUSER_HEM = 0.070
 
+REGIONS = ("shoes", "hair", "trousers", "shirt")
+"""What covers the skin, in the order in which `region_fields` decides."""
+
 # (height, half width, half depth, centre x, centre z)
 _SHIRT = (
     (SHIRT_HEM, 0.170, 0.116, 0.0, -0.016),
@@ -119,9 +122,7 @@ def torso_distance(points: Field) -> Field:
     slope = round_cone(points, (0.03, 1.437, -0.028), (0.150, 1.405, -0.022), 0.042, 0.048)
     pectoral = ellipsoid(points, (0.068, 1.318, 0.066), (0.078, 0.060, 0.034))
     blade = ellipsoid(points, (0.085, 1.330, -0.090), (0.070, 0.085, 0.036))
-    return smooth_min(
-        smooth_min(trunk, slope, 0.05), smooth_min(pectoral, blade, 0.01), 0.05
-    )
+    return smooth_min(smooth_min(trunk, slope, 0.05), smooth_min(pectoral, blade, 0.01), 0.05)
 
 
 def leg_distance(points: Field) -> Field:
@@ -194,15 +195,17 @@ def body_distance(points: NDArray[np.floating]) -> Field:
 def region_fields(points: NDArray[np.floating]) -> dict[str, Field]:
     """Which cloth covers a point of the surface: negative inside, zero on the border.
 
-    The first negative field in the order given decides; where none is negative it is skin. The
-    fields are only meant for points on or near the surface.
+    The first negative field in the order of `REGIONS` decides; where none is negative it is skin.
+    The fields are only meant for points on or near the surface.
     """
     mirrored = np.array(points, dtype=np.float32)
     mirrored[:, 0] = np.abs(mirrored[:, 0])
     x, y, z = mirrored.T
     along, back, depth = arm_coordinates(mirrored)
     sleeve = np.minimum(along - np.float32(SLEEVE_END), np.float32(0.11) - np.hypot(back, depth))
-    collar = np.minimum(np.float32(0.0675) - np.hypot(x, z + np.float32(0.016)), y - np.float32(1.36))
+    collar = np.minimum(
+        np.float32(0.0675) - np.hypot(x, z + np.float32(0.016)), y - np.float32(1.36)
+    )
     shirt = np.maximum(np.maximum(sleeve, collar), y - np.float32(1.475))
     return {
         "shoes": y - np.float32(TROUSER_HEM + 0.003),

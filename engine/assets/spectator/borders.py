@@ -75,9 +75,7 @@ def cut(
     vertices, field = _snap(vertices, triangles, field, snap)
     edges, along = _crossing_edges(triangles, field)
     start, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
-    middle = {
-        (a, b): len(vertices) + k for k, (a, b) in enumerate(map(tuple, edges.tolist()))
-    }
+    middle = {(a, b): len(vertices) + k for k, (a, b) in enumerate(map(tuple, edges.tolist()))}
     vertices = np.concatenate([vertices, start + along[:, None] * (end - start)])
     field = np.concatenate([field, np.zeros(len(edges))])
     result: list[tuple[int, int, int]] = []
@@ -91,9 +89,7 @@ def cut(
     return vertices, pieces_array, inside, np.array(source, dtype=np.int64)
 
 
-def _split(
-    corners: list[int], middle: dict[tuple[int, int], int]
-) -> list[tuple[int, int, int]]:
+def _split(corners: list[int], middle: dict[tuple[int, int], int]) -> list[tuple[int, int, int]]:
     """The pieces of one triangle, given the new vertex of each cut edge."""
     cuts = [
         middle.get((min(a, b), max(a, b)))

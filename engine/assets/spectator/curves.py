@@ -110,10 +110,8 @@ class Performance:
         return self
 
     def towards(self, goal: Pose, *names: str, keys: Sequence[tuple[float, float]]) -> Performance:
-        """Move channels from the base pose to another one; `keys` are (seconds, share of the way)."""
-        share = keyed(
-            np.array([t for t, _ in keys]), np.array([[s] for _, s in keys]), self.times
-        )
+        """Move channels from the base pose to another; `keys` are (seconds, share of the way)."""
+        share = keyed(np.array([t for t, _ in keys]), np.array([[s] for _, s in keys]), self.times)
         for name in names:
             for channel in _sided(self.base, name):
                 self._curves[channel] += share * (goal[channel] - self.base[channel])
@@ -125,7 +123,9 @@ class Performance:
         `phase` in turns shifts it: 0.25 gives ``cos - 1``, which only dips below the base.
         """
         angle = 2 * np.pi * (cycles * self.times / self.duration + phase)
-        return self.add(name, (np.sin(angle) - np.sin(2 * np.pi * phase))[:, None] * np.asarray(amount))
+        return self.add(
+            name, (np.sin(angle) - np.sin(2 * np.pi * phase))[:, None] * np.asarray(amount)
+        )
 
     def swing(self, name: str, amount: Value, cycles: int, phase: float = 0.0) -> Performance:
         """Add a sine of whole `cycles` about the base pose, `phase` turns ahead.

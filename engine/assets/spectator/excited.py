@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from .curves import Performance, pose
+import numpy as np
+
+from .curves import Performance, keyed, pose
 from .poses import standing
 from .rotations import Array
 
@@ -37,7 +39,9 @@ def cheer() -> Performance:
     p.swing("spine", (0.0, -0.04, -0.035), 1).swing("chest", (0.0, 0.05, -0.03), 1, 0.1)
     p.swing("neck", (0.03, 0.0, 0.0), 4, -0.08).swing("head", (0.07, 0.0, 0.0), 4, -0.14)
     p.swing("head", (0.03, 0.16, 0.05), 1, 0.1)
-    p.swing("hand_l", (0.012, 0.040, 0.030), 4, -0.35).swing("hand_r", (0.014, 0.048, 0.034), 4, -0.43)
+    p.swing("hand_l", (0.012, 0.040, 0.030), 4, -0.35).swing(
+        "hand_r", (0.014, 0.048, 0.034), 4, -0.43
+    )
     p.swing("hand_l", (0.030, 0.012, 0.03), 1, 0.3).swing("hand_r", (0.040, 0.020, -0.03), 2, 0.15)
     p.swing("curl_l", 0.30, 2, -0.25).swing("curl_r", 0.38, 2, -0.15)
     p.swing("shrug", 0.05, 4, -0.3)
@@ -67,20 +71,36 @@ def cheer_2() -> Performance:
     up, cocked, low = (0, 0, 0), (0.03, -0.05, -0.02), (0.00, -0.50, 0.17)
     p.key(
         "hand_r",
-        (0, up), (0.14, (0.0, 0.012, -0.03)), (0.34, low), (0.46, (0.01, -0.47, 0.16)),
-        (0.68, cocked), (0.86, (0, 0.01, 0.01)), (1.0, up), (1.12, (0.0, 0.012, -0.03)),
-        (1.30, (-0.01, -0.46, 0.19)), (1.42, (0.01, -0.46, 0.16)), (1.66, cocked),
-        (1.86, (0, 0.008, 0.01)), (2.0, up),
+        (0, up),
+        (0.14, (0.0, 0.012, -0.03)),
+        (0.34, low),
+        (0.46, (0.01, -0.47, 0.16)),
+        (0.68, cocked),
+        (0.86, (0, 0.01, 0.01)),
+        (1.0, up),
+        (1.12, (0.0, 0.012, -0.03)),
+        (1.30, (-0.01, -0.46, 0.19)),
+        (1.42, (0.01, -0.46, 0.16)),
+        (1.66, cocked),
+        (1.86, (0, 0.008, 0.01)),
+        (2.0, up),
     )
     p.key(
         "elbow_r",
-        (0, (0, 0, 0)), (0.36, (-0.25, -0.7, -0.5)), (0.70, (0, 0, 0)), (1.0, (0, 0, 0)),
-        (1.34, (-0.25, -0.7, -0.5)), (1.68, (0, 0, 0)), (2.0, (0, 0, 0)),
+        (0, (0, 0, 0)),
+        (0.36, (-0.25, -0.7, -0.5)),
+        (0.70, (0, 0, 0)),
+        (1.0, (0, 0, 0)),
+        (1.34, (-0.25, -0.7, -0.5)),
+        (1.68, (0, 0, 0)),
+        (2.0, (0, 0, 0)),
     )
     p.swing("hand_l", (0.02, 0.05, -0.04), 2, 0.1).swing("hand_l", (0.01, 0.03, 0.02), 1)
     p.swing("hips", (0.0, 0.016, 0.0), 2, 0.25).swing("hips", (0.0, 0.006, 0.0), 4, 0.25)
     p.swing("hips", (0.016, 0.0, 0.010), 1)
-    p.swing("hips_turn", (-0.05, 0.09, -0.03), 2, 0.22).swing("spine", (-0.07, 0.06, -0.04), 2, 0.17)
+    p.swing("hips_turn", (-0.05, 0.09, -0.03), 2, 0.22).swing(
+        "spine", (-0.07, 0.06, -0.04), 2, 0.17
+    )
     p.swing("chest", (-0.09, 0.09, -0.06), 2, 0.12).swing("neck", (-0.03, -0.06, 0.02), 2, 0.08)
     p.swing("head", (-0.10, -0.14, 0.05), 2, 0.03).swing("head", (0.02, 0.06, 0.02), 1)
     p.swing("shrug_r", 0.10, 2, 0.15).swing("shrug_l", 0.05, 2, 0.3)
@@ -93,44 +113,71 @@ def jump() -> Performance:
     leave, land = 0.40, 0.77
     stretched, half = 0.066, (land - leave) / 2
     top = GRAVITY * half * half / 2
-    height = [
-        (leave + 2 * half * k / 8, stretched + top * (1 - ((k - 4) / 4) ** 2)) for k in range(9)
-    ]
-    ground = [(0.0, -0.055), (0.16, -0.105), (0.30, -0.015)]
+    flight = [(leave + half * k / 4, stretched + top * (1 - ((k - 4) / 4) ** 2)) for k in range(9)]
+    before = [(0.0, -0.055), (0.16, -0.105), (0.30, -0.015)]
     after = [(0.86, -0.02), (0.98, -0.065), (1.1, -0.055)]
-    p.key("hips", *((t, (0.0, y, 0.0)) for t, y in ground + height + after))
-    lift = [(0.0, 0.0), (leave, 0.0)] + [(t, y - stretched + 0.0) for t, y in height[1:-1]] + [(land, 0.0), (1.1, 0.0)]
+    times, heights = np.array(before + flight + after).T
+    height = keyed(times, heights[:, None], p.times)
+    up = np.array([0.0, 1.0, 0.0])
+    p.add("hips", height * up)
+    # The feet rise with the hips as soon as these are higher than straight legs allow.
+    p.add("ball", np.maximum(height - stretched, 0.0) * up)
     for side, tuck, late in (("_l", 0.035, 0.0), ("_r", 0.05, 0.01)):
         middle = (leave + land) / 2 + late
-        p.key("ball" + side, *((t, (0.0, y, 0.0)) for t, y in lift))
         p.key("ball" + side, (leave, (0, 0, 0)), (middle, (0, tuck, -tuck)), (land, (0, 0, 0)))
         p.key(
             "foot" + side,
-            (0.0, (0, 0)), (0.26, (0.02, 0)), (leave, (0.62, 0)), (leave + 0.10, (0.80, 0)),
-            (land - 0.05, (0.42, 0)), (land, (0.34, 0)), (land + 0.07 + late, (0.0, 0)), (1.1, (0, 0)),
+            (0.0, (0, 0)),
+            (0.26, (0.02, 0)),
+            (leave, (0.62, 0)),
+            (leave + 0.10, (0.80, 0)),
+            (land - 0.05, (0.56, 0)),
+            (land, (0.50, 0)),
+            (land + 0.07 + late, (0.0, 0)),
+            (1.1, (0, 0)),
         )
         p.key(
             "toes" + side,
-            (0.0, 0.0), (leave, 0.0), (leave + 0.06, -0.75), (land - 0.08, -0.4), (land, 0.0), (1.1, 0),
+            (0.0, 0.0),
+            (leave, 0.0),
+            (leave + 0.06, -0.75),
+            (land - 0.08, -0.4),
+            (land, 0.0),
+            (1.1, 0),
         )
         p.key(
             "hand" + side,
-            (0.0, (0, 0, 0)), (0.15 + late, (0.02, -0.20, -0.05)), (0.42, (0.03, 0.30, -0.17)),
-            (0.56 + late, (0.05, 0.27, -0.20)), (0.80, (0.03, 0.13, -0.08)),
-            (0.95 + late, (0.01, -0.03, 0.01)), (1.1, (0, 0, 0)),
+            (0.0, (0, 0, 0)),
+            (0.15 + late, (0.02, -0.20, -0.05)),
+            (0.42, (0.03, 0.30, -0.17)),
+            (0.56 + late, (0.05, 0.27, -0.20)),
+            (0.80, (0.03, 0.13, -0.08)),
+            (0.95 + late, (0.01, -0.03, 0.01)),
+            (1.1, (0, 0, 0)),
         )
-    for name, amount, late in (("hips_turn", 0.22, 0.0), ("spine", 0.16, 0.02), ("chest", 0.14, 0.04)):
+    for name, amount, late in (
+        ("hips_turn", 0.22, 0.0),
+        ("spine", 0.16, 0.02),
+        ("chest", 0.14, 0.04),
+    ):
         p.key(
             name,
-            (0.0, (0.5 * amount, 0, 0)), (0.15 + late, (amount, 0.02, 0)), (0.42 + late, (-0.25 * amount, 0, 0.01)),
-            (0.66 + late, (0.05 * amount, -0.02, 0)), (0.88 + late, (0.72 * amount, 0, 0)),
+            (0.0, (0.5 * amount, 0, 0)),
+            (0.15 + late, (amount, 0.02, 0)),
+            (0.42 + late, (-0.25 * amount, 0, 0.01)),
+            (0.66 + late, (0.05 * amount, -0.02, 0)),
+            (0.88 + late, (0.72 * amount, 0, 0)),
             (1.1, (0.5 * amount, 0, 0)),
         )
     for name, amount in (("neck", 0.08), ("head", 0.15)):
         p.key(
             name,
-            (0.0, (-0.4 * amount, 0, 0)), (0.22, (-amount, 0, 0)), (0.50, (0.2 * amount, 0.05, 0)),
-            (0.72, (-0.2 * amount, 0.04, 0)), (0.90, (0.9 * amount, 0, 0)), (1.1, (-0.4 * amount, 0, 0)),
+            (0.0, (-0.4 * amount, 0, 0)),
+            (0.22, (-amount, 0, 0)),
+            (0.50, (0.2 * amount, 0.05, 0)),
+            (0.72, (-0.2 * amount, 0.04, 0)),
+            (0.90, (0.9 * amount, 0, 0)),
+            (1.1, (-0.4 * amount, 0, 0)),
         )
     p.swing("hips", (0.006, 0.0, 0.0), 1)
     return p

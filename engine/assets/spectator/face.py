@@ -77,7 +77,11 @@ def face_features(segments: int) -> tuple[Feature, ...]:
         features.append(Feature("skin", (0.035, 0.03, 0.04), *eye))
         if segments >= 6:
             brow = _lens(
-                (side * 0.0330, 1.6480, 0.0905), (0.0175, 0.0044, 0.0075), side * -0.04, side * 0.36, 6
+                (side * 0.0330, 1.6480, 0.0905),
+                (0.0175, 0.0044, 0.0075),
+                side * -0.04,
+                side * 0.36,
+                6,
             )
             features.append(Feature("hair", (0.9, 0.9, 0.9), *brow))
     if segments >= 6:

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...animation.skeleton import Skeleton
+from ..rotations import multiply
 from .limbs import bend_limb
 from .rotations import (
     Array,
@@ -22,7 +23,6 @@ from .rotations import (
     between_frames,
     from_pitch_yaw_roll,
     inverse,
-    multiply,
     rotate,
     twist_angle,
     unit,
@@ -107,7 +107,12 @@ def solve(skeleton: Skeleton, controls: Controls) -> tuple[Array, Array]:
     turned = {"hips": from_pitch_yaw_roll(controls["hips_turn"])}
     at = {"hips": np.asarray(controls["hips"])}
     rotation[:, hips] = turned["hips"]
-    for parent, name in (("hips", "spine"), ("spine", "chest"), ("chest", "neck"), ("neck", "head")):
+    for parent, name in (
+        ("hips", "spine"),
+        ("spine", "chest"),
+        ("chest", "neck"),
+        ("neck", "head"),
+    ):
         local = from_pitch_yaw_roll(controls[name])
         rotation[:, skeleton.index(name)] = local
         turned[name] = multiply(turned[parent], local)
@@ -132,7 +137,9 @@ def _arm(
     mirror: Array,
 ) -> dict[str, Array]:
     """Local rotations of one arm, from the collar bone to the fingers."""
-    bone = {name: place[name + "_l"] * mirror for name in ("shoulder", "upper_arm", "lower_arm", "hand")}
+    bone = {
+        name: place[name + "_l"] * mirror for name in ("shoulder", "upper_arm", "lower_arm", "hand")
+    }
     chest, chest_turn = at["chest"], turned["chest"]
     hold, clasp = own["hold"], own["clasp"]
 
@@ -164,7 +171,9 @@ def _arm(
     finger = unit(straight * (1 - own["wrist"]) + steer(own["finger"]) * own["wrist"])
     hand = between_frames(arm, palm, finger, across(steer(own["palm"]), finger))
     twist = twist_angle(multiply(inverse(lower), hand), arm)
-    lower = multiply(lower, about_axis(np.broadcast_to(arm, straight.shape), _FOREARM_SHARE * twist))
+    lower = multiply(
+        lower, about_axis(np.broadcast_to(arm, straight.shape), _FOREARM_SHARE * twist)
+    )
     close = np.broadcast_to(np.cross(arm, palm), straight.shape)
     return {
         "shoulder": collar,

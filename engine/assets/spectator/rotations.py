@@ -5,27 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rotations import multiply
+
 Array = NDArray[np.float64]
-
-
-def multiply(a: Array, b: Array) -> Array:
-    """Hamilton product: the turn `b`, then the turn `a`."""
-    ax, ay, az, aw = np.moveaxis(a, -1, 0)
-    bx, by, bz, bw = np.moveaxis(b, -1, 0)
-    return np.stack(
-        [
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-            aw * bw - ax * bx - ay * by - az * bz,
-        ],
-        axis=-1,
-    )
 
 
 def inverse(rotation: Array) -> Array:
     """The opposite turn of a unit quaternion."""
-    return rotation * np.array([-1.0, -1.0, -1.0, 1.0])
+    result: Array = rotation * np.array([-1.0, -1.0, -1.0, 1.0])
+    return result
 
 
 def rotate(rotation: Array, vector: Array) -> Array:

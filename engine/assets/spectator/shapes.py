@@ -73,9 +73,7 @@ def loft(along: Field, across: Field, depth: Field, knots: Knots, edge: float) -
     table = np.asarray(knots, dtype=np.float64)
     steps = np.linspace(table[0, 0], table[-1, 0], 512)
     curves = PchipInterpolator(table[:, 0], table[:, 1:])(steps)
-    width, thick, cx, cz = (
-        np.interp(along, steps, curve).astype(np.float32) for curve in curves.T
-    )
+    width, thick, cx, cz = (np.interp(along, steps, curve).astype(np.float32) for curve in curves.T)
     x, z = (across - cx) / width, (depth - cz) / thick
     outer = np.sqrt(x * x + z * z) + np.float32(1e-9)
     inner = np.sqrt((x / width) ** 2 + (z / thick) ** 2) + np.float32(1e-9)

@@ -87,7 +87,7 @@ class SurfaceWeights:
         from scipy.spatial import cKDTree
 
         vertices, triangles = mirrored(*half_surface(MESH_STEP))
-        left = vertices * np.array([1.0, 1.0, 1.0])
+        left = vertices.copy()
         left[:, 0] = np.abs(left[:, 0])
         labels = _labels(left.astype(np.float32))
         column = {name: index for index, name in enumerate(names)}
@@ -133,7 +133,9 @@ def _diffuse(
     squared = np.sum((vertices[a] - vertices[b]) ** 2, axis=1) + MESH_STEP**2 * 0.1
     link = coo_matrix((1.0 / squared, (a, b)), shape=(count, count)).tocsr()
     degree = np.asarray(link.sum(axis=1)).ravel()
-    mean_square = np.asarray(coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)).sum(axis=1))
+    mean_square = np.asarray(
+        coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)).sum(axis=1)
+    )
     spread = mean_square.ravel() / degree
     flow = identity(count) - diags(1.0 / degree) @ link
     steps = 4
@@ -154,4 +156,5 @@ def strongest(weights: NDArray[np.float64]) -> NDArray[np.float64]:
     kept = weights.copy()
     floor = np.sort(kept, axis=1)[:, -MAX_INFLUENCES][:, None]
     kept[(kept < floor) | (kept < _LEAST)] = 0.0
-    return kept / kept.sum(axis=1, keepdims=True)
+    result: NDArray[np.float64] = kept / kept.sum(axis=1, keepdims=True)
+    return result

@@ -7,14 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...animation.kinematics import Kinematics
 from ...animation.skeleton import Skeleton
 from ..character import Material, SkinnedMesh
 from ..levels import level_name
-from .body import occlusion, region_fields, surface_normals
+from .body import REGIONS, occlusion, region_fields, surface_normals
 from .borders import cut
 from .decimation import reduce_surface
 from .face import face_features
 from .meshing import Triangles, Vertices, half_surface, mirrored, rim_vertices, thin_out
+from .seated import sit_clap
 from .skinning import SurfaceWeights
 
 MATERIALS = (
@@ -40,7 +42,7 @@ class _Level:
     """Corners of the eyes' outline; 0 leaves the face out."""
 
 
-_LEVELS = (_Level(2360, 0.28, 8), _Level(640, 0.22, 4), _Level(150, 0.16, 0))
+_LEVELS = (_Level(2380, 0.28, 8), _Level(640, 0.22, 4), _Level(156, 0.16, 0))
 
 
 def _names(level: int) -> list[str]:
@@ -57,7 +59,7 @@ def _half(
     vertices[rim_vertices(triangles), 0] = 0.0
     names = _names(0)
     material = np.full(len(triangles), -1)
-    for name in region_fields(vertices):
+    for name in REGIONS:
         field = region_fields(vertices)[name]
         vertices, triangles, inside, source = cut(vertices, triangles, field, snap)
         material = material[source]
@@ -123,6 +125,18 @@ def _four_influences(
     return np.where(four > 0, joints, 0).astype(np.uint16), four.astype(np.float32)
 
 
+def _clapping(skeleton: Skeleton, vertices: Vertices, weights: NDArray[np.float64]) -> Vertices:
+    """Vertices (V, 3) in a pose that bends hips, knees and elbows: seated, clapping."""
+    clip = sit_clap().clip(skeleton)
+    kinematics = Kinematics(skeleton, 1)
+    palettes = np.empty((1, skeleton.joint_count, 3, 4), dtype=np.float32)
+    first = (part[:1] for part in (clip.rotation, clip.translation, clip.scale))
+    kinematics.evaluate(kinematics.layout.pack(*first), palettes)
+    turn = np.einsum("vj,jab->vab", weights, palettes[0].astype(np.float64))
+    posed: Vertices = np.einsum("vab,vb->va", turn[:, :, :3], vertices) + turn[:, :, 3]
+    return posed
+
+
 def spectator_meshes(skeleton: Skeleton) -> tuple[tuple[SkinnedMesh, ...], ...]:
     """Mesh the body at all levels of detail, finest first; needs the `build` extra.
 
@@ -131,8 +145,10 @@ def spectator_meshes(skeleton: Skeleton) -> tuple[tuple[SkinnedMesh, ...], ...]:
     closed.
     """
     weights = SurfaceWeights(skeleton.names)
-    fine = thin_out(*mirrored(*half_surface(MESH_STEP)), 6000)
-    levels = reduce_surface(*fine, tuple(level.triangles for level in _LEVELS))
+    vertices, triangles = thin_out(*mirrored(*half_surface(MESH_STEP)), 6000)
+    bent = _clapping(skeleton, vertices, weights.at(vertices))
+    counts = tuple(level.triangles for level in _LEVELS)
+    levels = reduce_surface(vertices, bent, triangles, counts)
     return tuple(
         _level_meshes(index, *surface, weights, skeleton.index("head"))
         for index, surface in enumerate(levels)

@@ -93,6 +93,9 @@ def test_the_clip_holds_the_frames_of_the_file(path: Path) -> None:
     motion = load_bvh(path)
     rotation, translation = local_transforms(document)
     order = [document.names.index(name) for name in motion.skeleton.names]
+    assert [order[end.joint] for end in motion.end_sites] == [
+        end.joint for end in document.end_sites
+    ]
     step = max(round(1 / 60 / document.frame_time), round(document.frame_time * 60 + 0.49), 1)
     if document.frame_time <= 0.0167:
         step = 1

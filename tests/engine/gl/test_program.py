@@ -55,8 +55,14 @@ MATRIX = np.array([[2.0, 0, 0, 5], [0, 3, 0, 6], [0, 0, 4, 7], [0, 0, 0, 1]])
 
 @pytest.mark.parametrize(
     "value",
-    [MATRIX, MATRIX.astype(np.float32), Mat4(*MATRIX.T.ravel()), np.asfortranarray(MATRIX)],
-    ids=["float64", "float32", "pyglet", "fortran"],
+    [
+        MATRIX,
+        MATRIX.astype(np.float32),
+        Mat4(*MATRIX.T.ravel()),
+        np.asfortranarray(MATRIX),
+        np.frombuffer(MATRIX.T.astype(np.float32).tobytes(), np.float32),
+    ],
+    ids=["float64", "float32", "pyglet", "fortran", "read-only, flat"],
 )
 def test_a_matrix_maps_column_vectors(shade: Shade, value: object) -> None:
     result = shade("result = u * vec4(1.0, 10.0, 100.0, 1.0);", {"u": value}, "uniform mat4 u;")

@@ -1,0 +1,186 @@
+"""The demo in a window."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from time import perf_counter
+from typing import Any
+
+from rich.console import Console
+
+import tifo
+
+from .app import Show, make_simulation
+from .overlay import Overlay
+from .recording import Clip, write_png
+
+RECORDED_RATE = 30
+FLY_SPEED = 12.0
+"""Metres a second; five times that with Shift held."""
+HINT = (
+    "G / H  goal for home / away        click or B  ball into the crowd\n"
+    "1 2 3  cameras        C  orbit or fly        WASD QE  move        drag, scroll  look\n"
+    "F  fullscreen        V  vsync        P  pause        F12  screenshot        Esc  quit"
+)
+
+
+class Game:
+    """The running demo: a window, a camera, and what the keys do.
+
+    Parameters
+    ----------
+    show
+        What to show.
+    console
+        Where notes go.
+    """
+
+    def __init__(self, show: Show, console: Console) -> None:
+        self.console = console
+        self.show = show
+        with console.status("building the stadium"):
+            self.simulation, self.camera = make_simulation(show)
+        self.window: Any = tifo.open_window(
+            show.size, "tifo", vsync=show.vsync, fullscreen=show.fullscreen
+        )
+        import pyglet
+
+        self._pyglet: Any = pyglet
+        self._key: Any = pyglet.window.key
+        self._mouse: Any = pyglet.window.mouse
+        self.keys: Any = pyglet.window.key.KeyStateHandler()
+        self.stage = tifo.Stage(self.simulation, self.window.get_framebuffer_size())
+        self.overlay = Overlay(self.window, HINT)
+        self.paused = False
+        self._pointer = (show.size[0] // 2, show.size[1] // 2)
+        self._dragged = False
+        self._before = perf_counter()
+        self._clip = Clip(show.record, self.stage.size, RECORDED_RATE) if show.record else None
+        self.window.push_handlers(self, self.keys)
+        if show.seconds is not None:
+            pyglet.clock.schedule_once(lambda _: self.window.dispatch_event("on_close"), show.seconds)
+
+    def run(self) -> None:
+        """Play until the window closes."""
+        self._before = perf_counter()
+        self._pyglet.app.run(1 / 60 if self.show.vsync else 0)
+
+    def on_draw(self) -> None:
+        """One frame."""
+        now = perf_counter()
+        real = now - self._before
+        self._before = now
+        # A clip shows even steps of time however long a picture took.
+        delta = real if self._clip is None else 1 / RECORDED_RATE
+        self._steer(real)
+        self.stage.draw(self.camera, 0.0 if self.paused else delta)
+        if self._clip is not None:
+            self._clip.add(self.stage.pixels())
+        self.stage.present(self.window.get_framebuffer_size())
+        self.overlay.draw(real, self.simulation, self.stage.counts, paused=self.paused)
+
+    def on_resize(self, width: int, height: int) -> None:
+        """Draw pictures of the window's new size; a clip keeps the size that it began with."""
+        if self._clip is None and width > 0 and height > 0:
+            self.stage.resize(self.window.get_framebuffer_size())
+
+    def on_key_press(self, symbol: int, modifiers: int) -> None:
+        """What single keys do."""
+        key = self._key
+        presets = {key._1: "tv", key._2: "close", key._3: "bowl"}
+        if symbol == key.G:
+            self.simulation.send(tifo.Goal(side=0))
+            self.overlay.say("GOAL for the home side!")
+        elif symbol == key.H:
+            self.simulation.send(tifo.Goal(side=1))
+            self.overlay.say("GOAL for the away side!")
+        elif symbol == key.B:
+            self._shoot(*self._pointer)
+        elif symbol in presets:
+            eye, target = tifo.camera_presets(self.simulation.plan)[presets[symbol]]
+            self.camera = tifo.FreeCamera.looking(eye, target)
+        elif symbol == key.C:
+            fly = self.camera.mode is tifo.CameraMode.ORBIT
+            self.camera.mode = tifo.CameraMode.FLY if fly else tifo.CameraMode.ORBIT
+            self.overlay.say(f"camera: {self.camera.mode.value}")
+        elif symbol == key.P:
+            self.paused = not self.paused
+        elif symbol == key.F:
+            self.window.set_fullscreen(not self.window.fullscreen)
+        elif symbol == key.V:
+            self.window.set_vsync(not self.window.vsync)
+            self.overlay.say(f"vsync {'on' if self.window.vsync else 'off'}")
+        elif symbol == key.F1:
+            self.overlay.help_shown = not self.overlay.help_shown
+        elif symbol == key.F12:
+            name = f"tifo-{datetime.now():%Y%m%d-%H%M%S}.png"
+            write_png(name, self.stage.pixels())
+            self.overlay.say(f"wrote {name}")
+
+    def on_mouse_motion(self, x: int, y: int, dx: int, dy: int) -> None:
+        """Remember where the mouse points."""
+        self._pointer = (x, y)
+
+    def on_mouse_drag(self, x: int, y: int, dx: int, dy: int, buttons: int, mods: int) -> None:
+        """Look about, or shift with the right or middle button."""
+        self._pointer = (x, y)
+        self._dragged = self._dragged or abs(dx) + abs(dy) > 1
+        if buttons & self._mouse.LEFT:
+            self.camera.drag(dx, dy)
+        else:
+            self.camera.pan(dx, dy)
+
+    def on_mouse_press(self, x: int, y: int, button: int, modifiers: int) -> None:
+        """A click begins."""
+        self._dragged = False
+
+    def on_mouse_release(self, x: int, y: int, button: int, modifiers: int) -> None:
+        """A click without a drag shoots the ball there."""
+        if button == self._mouse.LEFT and not self._dragged:
+            self._shoot(x, y)
+
+    def on_mouse_scroll(self, x: int, y: int, scroll_x: float, scroll_y: float) -> None:
+        """Move nearer or farther."""
+        self.camera.zoom(scroll_y)
+        self.camera.keep_above(0.4)
+
+    def on_close(self) -> None:
+        """Write what was asked for and free everything on the GPU; the window closes after."""
+        if self._clip is not None:
+            self._clip.close()
+            self.console.print(f"wrote [bold]{self.show.record}[/]")
+        self.window.switch_to()
+        if self.show.screenshot:
+            write_png(self.show.screenshot, self.stage.pixels())
+            self.console.print(f"wrote [bold]{self.show.screenshot}[/]")
+        self.stage.close()
+
+    def _steer(self, delta: float) -> None:
+        key = self._key
+        speed = FLY_SPEED * (5.0 if self.keys[key.LSHIFT] else 1.0) * min(delta, 0.1)
+
+        def axis(positive: int, negative: int) -> float:
+            return speed * (float(self.keys[positive]) - float(self.keys[negative]))
+
+        moves = (axis(key.D, key.A), axis(key.E, key.Q), axis(key.W, key.S))
+        if any(moves):
+            self.camera.fly(*moves)
+            self.camera.keep_above(0.4)
+
+    def _shoot(self, x: int, y: int) -> None:
+        origin, direction = self.camera.ray(x, y, self.window.get_size())
+        plan = self.simulation.plan
+        seat = tifo.pick_seat(plan.position, origin, direction)
+        if seat is None:
+            self.overlay.say("the ball misses the stands")
+            return
+        px, py, pz = (float(value) for value in plan.position[:, seat])
+        self.simulation.send(tifo.BallHit(place=(px, py + 1.0, pz)))
+        self.overlay.say(f"the ball hits seat {plan.label(seat)}")
+
+
+def run_window(show: Show, console: Console) -> int:
+    """Play the demo in a window; the exit code."""
+    game = Game(show, console)
+    game.run()
+    return 0

@@ -1,0 +1,263 @@
+"""The spectator that ships: its shape, its weights and its motions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tifo.engine.animation.clip import Clip
+from tifo.engine.animation.kinematics import Kinematics
+from tifo.engine.assets.character import Character, SkinnedMesh
+from tifo.engine.assets.spectator import builtin_spectator
+from tifo.engine.assets.spectator.clips import spectator_clips
+from tifo.engine.assets.spectator.skeleton import spectator_skeleton
+
+SITTING = ("sit_idle", "sit_idle_2", "sit_clap")
+STANDING = ("stand_idle", "stand_idle_2", "clap", "cheer", "cheer_2", "wave", "dismay")
+ONE_SHOTS = ("stand_up", "sit_down")
+
+
+@pytest.fixture(scope="module")
+def spectator() -> Character:
+    return builtin_spectator()
+
+
+def palettes(character: Character, clip: Clip) -> NDArray[np.float32]:
+    """(F, J, 3, 4) skinning matrices of every key."""
+    kinematics = Kinematics(character.skeleton, clip.frame_count)
+    out = np.empty((clip.frame_count, clip.joint_count, 3, 4), dtype=np.float32)
+    kinematics.evaluate(kinematics.layout.pack(clip.rotation, clip.translation, clip.scale), out)
+    return out
+
+
+def joint_paths(character: Character, clip: Clip, *names: str) -> NDArray[np.float64]:
+    """(F, K, 3) model-space positions of some joints."""
+    rows = [character.skeleton.index(name) for name in names]
+    palette = palettes(character, clip)[:, rows].astype(np.float64)
+    bind = -character.skeleton.inverse_bind[rows, :, 3]
+    path: NDArray[np.float64] = np.einsum("fkab,kb->fka", palette[..., :3], bind)
+    path += palette[..., 3]
+    return path
+
+
+def skinned(mesh: SkinnedMesh, palette: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(V, 3) vertices in the pose of (J, 3, 4) palettes."""
+    turn = np.einsum("vk,vkab->vab", mesh.weights, palette[mesh.joints])
+    moved: NDArray[np.float32] = np.einsum("vab,vb->va", turn[:, :, :3], mesh.positions)
+    moved += turn[:, :, 3]
+    return moved
+
+
+def levels(character: Character) -> list[tuple[SkinnedMesh, ...]]:
+    return [character.meshes, *character.lower_levels]
+
+
+def merged(meshes: tuple[SkinnedMesh, ...]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """One surface whose vertices are told apart by their position alone."""
+    starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    points = np.concatenate([mesh.positions for mesh in meshes]).astype(np.float64)
+    faces = np.concatenate([m.triangles + s for m, s in zip(meshes, starts[:-1], strict=True)])
+    unique, index = np.unique(points.round(7), axis=0, return_inverse=True)
+    return unique, index.reshape(-1)[faces]
+
+
+def test_contents(spectator: Character) -> None:
+    assert spectator.name == "spectator"
+    assert spectator.notes == ()
+    assert spectator.skeleton.joint_count == 24
+    assert [m.name for m in spectator.materials] == ["skin", "hair", "shirt", "trousers", "shoes"]
+    counts = [sum(len(mesh.triangles) for mesh in level) for level in levels(spectator)]
+    assert 2500 <= counts[0] <= 3000
+    assert 650 <= counts[1] <= 900
+    assert 150 <= counts[2] <= 290
+    assert {clip.name for clip in spectator.clips} == {*SITTING, *STANDING, *ONE_SHOTS, "jump"}
+    assert [clip.name for clip in spectator.clips if not clip.looping] == list(ONE_SHOTS)
+
+
+def test_stands_on_the_ground_and_is_175_cm_tall(spectator: Character) -> None:
+    for level, tolerance in zip(levels(spectator), (0.005, 0.015, 0.04), strict=True):
+        points = np.concatenate([mesh.positions for mesh in level])
+        assert points[:, 1].min() == pytest.approx(0.0, abs=tolerance)
+        assert points[:, 1].max() == pytest.approx(1.75, abs=tolerance)
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_every_level_is_closed_and_wound_outward(spectator: Character, level: int) -> None:
+    points, faces = merged(levels(spectator)[level])
+    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    edges, uses = np.unique(directed, axis=0, return_counts=True)
+    assert (uses == 1).all()
+    assert {tuple(e) for e in edges.tolist()} == {tuple(e[::-1]) for e in edges.tolist()}
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+    # A person of this height displaces some 70 litres; clothes add a few.
+    assert 0.055 < volume < 0.085
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_left_and_right_are_mirror_images(spectator: Character, level: int) -> None:
+    for mesh in levels(spectator)[level]:
+        here = {tuple(p) for p in mesh.positions.astype(np.float64).round(5).tolist()}
+        there = {(-x + 0.0, y, z) for x, y, z in here}
+        assert here == {(x + 0.0, y, z) for x, y, z in there}
+    names = spectator.skeleton.names
+    rest = dict(zip(names, spectator.skeleton.rest_translation, strict=True))
+    for name in names:
+        if name.endswith("_l"):
+            np.testing.assert_allclose(rest[name] * (-1, 1, 1), rest[name[:-2] + "_r"], atol=1e-6)
+            # The spectator faces +Z, so its own left is +X.
+            assert -spectator.skeleton.inverse_bind[names.index(name), 0, 3] > 0
+
+
+def test_weights_are_clean(spectator: Character) -> None:
+    names = spectator.skeleton.names
+    for level in levels(spectator):
+        for mesh in level:
+            np.testing.assert_allclose(mesh.weights.sum(axis=1), 1.0, atol=1e-5)
+            assert (mesh.weights >= 0).all()
+            arms = [k for k, name in enumerate(names) if name.startswith(("lower_arm", "hand"))]
+            legs = [k for k, name in enumerate(names) if name.startswith(("lower_leg", "foot"))]
+            on_arm = (np.isin(mesh.joints, arms) * mesh.weights).sum(axis=1)
+            on_leg = (np.isin(mesh.joints, legs) * mesh.weights).sum(axis=1)
+            # Neither the trunk nor the other side follows a forearm or a shin.
+            assert (np.abs(mesh.positions[on_arm > 0.01, 0]) > 0.25).all()
+            assert (mesh.positions[on_leg > 0.01, 1] < 0.65).all()
+            for side, sign in (("_l", 1.0), ("_r", -1.0)):
+                own = [k for k, name in enumerate(names) if name.endswith(side)]
+                share = (np.isin(mesh.joints, own) * mesh.weights).sum(axis=1)
+                assert (share[mesh.positions[:, 0] * sign < -0.09] < 0.02).all()
+
+
+def test_shading_is_subtle_outside_the_face(spectator: Character) -> None:
+    for mesh in spectator.meshes:
+        grey = mesh.colors[:, 0]
+        if mesh.name in ("shirt", "trousers", "shoes"):
+            assert grey.min() >= 0.54
+            assert grey.max() <= 1.0
+            assert np.ptp(grey) > 0.1
+            np.testing.assert_allclose(mesh.colors[:, :3], grey[:, None].repeat(3, 1), atol=1e-6)
+
+
+def test_loops_close_and_poses_join_exactly(spectator: Character) -> None:
+    first = {clip.name: (clip.rotation[0], clip.translation[0]) for clip in spectator.clips}
+    last = {clip.name: (clip.rotation[-1], clip.translation[-1]) for clip in spectator.clips}
+    joins = [(name, name) for name in first if name not in ONE_SHOTS]
+    joins += [("stand_up", "stand_idle"), ("sit_down", "sit_idle")]
+    for end, start in joins:
+        for a, b in zip(last[end], first[start], strict=True):
+            np.testing.assert_allclose(a, b, atol=1e-6, err_msg=f"{end} to {start}")
+    for one, other in (
+        ("sit_idle", "stand_up"),
+        ("sit_idle", "sit_idle_2"),
+        ("stand_idle", "sit_down"),
+        ("stand_idle", "stand_idle_2"),
+    ):
+        for a, b in zip(first[one], first[other], strict=True):
+            np.testing.assert_allclose(a, b, atol=1e-6, err_msg=f"{one} and {other}")
+
+
+@pytest.mark.parametrize("name", [*SITTING, *STANDING, *ONE_SHOTS])
+def test_feet_stay_planted(spectator: Character, name: str) -> None:
+    feet = joint_paths(spectator, spectator.clip(name), "foot_l", "foot_r", "toe_l", "toe_r")
+    assert np.linalg.norm(feet - feet[0], axis=2).max() < 0.005
+
+
+def test_jump_leaves_the_ground_and_lands_where_it_started(spectator: Character) -> None:
+    toes = joint_paths(spectator, spectator.clip("jump"), "toe_l", "toe_r")
+    height = toes[:, :, 1] - toes[0, :, 1]
+    assert 0.12 < height.max() < 0.30
+    assert height.min() > -0.002
+    flight = (height.min(axis=1) > 0.01).sum() / 60
+    assert 0.25 < flight < 0.45
+
+
+@pytest.mark.parametrize("name", SITTING)
+def test_seated_body_rests_on_the_seat(spectator: Character, name: str) -> None:
+    pose = palettes(spectator, spectator.clip(name))[0]
+    points = np.concatenate([skinned(mesh, pose) for mesh in spectator.meshes])
+    over_seat = (points[:, 2] > -0.65) & (points[:, 2] < -0.25) & (np.abs(points[:, 0]) < 0.25)
+    assert points[over_seat, 1].min() == pytest.approx(0.44, abs=0.012)
+    hips, knee = joint_paths(spectator, spectator.clip(name), "hips", "lower_leg_l")[0]
+    assert hips[2] == pytest.approx(-0.42, abs=0.02)
+    assert knee[2] == pytest.approx(0.0, abs=0.04)
+
+
+@pytest.mark.parametrize("name", ["clap", "sit_clap"])
+def test_claps_meet_eight_times_at_equal_steps(spectator: Character, name: str) -> None:
+    clip = spectator.clip(name)
+    pose = palettes(spectator, clip)
+    skin = next(mesh for mesh in spectator.meshes if mesh.name == "skin")
+    index = spectator.skeleton.index
+
+    def palm(side: str, frame: int) -> NDArray[np.float32]:
+        mine = [index("hand" + side), index("fingers" + side)]
+        share = (np.isin(skin.joints, mine) * skin.weights).sum(axis=1)
+        hand: NDArray[np.float32] = skinned(skin, pose[frame])[share > 0.9]
+        return hand
+
+    wrists = joint_paths(spectator, clip, "hand_l", "hand_r")
+    distance = np.linalg.norm(wrists[:, 0] - wrists[:, 1], axis=1)
+    inner = distance[1:-1]
+    touches = 1 + np.flatnonzero((inner < distance[:-2]) & (inner < distance[2:]))
+    assert [0, *touches] == list(range(0, 144, 18))
+    for frame in (0, 18, 90):
+        gap = palm("_l", frame)[:, 0].min() - palm("_r", frame)[:, 0].max()
+        # Flesh gives: the mitten-like hands overlap by up to a centimetre each.
+        assert -0.022 < gap < 0.004
+    assert palm("_l", 9)[:, 0].min() - palm("_r", 9)[:, 0].max() > 0.05
+
+
+@pytest.mark.parametrize("joint", ["lower_leg", "lower_arm"])
+def test_knees_and_elbows_bend_one_way(spectator: Character, joint: str) -> None:
+    above, below = ("upper_leg", "foot") if joint == "lower_leg" else ("upper_arm", "hand")
+    for clip in spectator.clips:
+        pose = palettes(spectator, clip).astype(np.float64)
+        for side in ("_l", "_r"):
+            a, b, c = joint_paths(
+                spectator, clip, above + side, joint + side, below + side
+            ).transpose(1, 0, 2)
+            upper = pose[:, spectator.skeleton.index(above + side), :, :3]
+            out = (b - a) / np.linalg.norm(b - a, axis=1, keepdims=True)
+            on = (c - b) / np.linalg.norm(c - b, axis=1, keepdims=True)
+            # In the frame of the upper bone the knee's shin goes back, the elbow's forearm forward.
+            local = np.einsum("fab,fa->fb", upper, on - out)
+            way = local[:, 2] * (-1 if joint == "lower_leg" else 1)
+            assert way.min() > -1e-3, f"{clip.name} {joint + side}"
+            bend = np.degrees(np.arccos(np.clip(np.einsum("fi,fi->f", out, on), -1, 1)))
+            assert bend.max() < 150, f"{clip.name} {joint + side}"
+
+
+def test_motions_are_smooth(spectator: Character) -> None:
+    """No joint jerks: only clapping hands, a fist pump and a jump accelerate hard."""
+    limits = {"clap": 250, "sit_clap": 250, "cheer_2": 130, "jump": 170, "sit_down": 45}
+    for clip in spectator.clips:
+        paths = joint_paths(spectator, clip, *spectator.skeleton.names)
+        if clip.looping:
+            paths = np.concatenate([paths, paths[1:3]])
+        acceleration = np.linalg.norm(np.diff(paths, n=2, axis=0), axis=2).max() * 3600
+        assert acceleration < limits.get(clip.name, 30), clip.name
+
+
+def test_idle_bodies_breathe(spectator: Character) -> None:
+    for name in ("sit_idle", "sit_idle_2", "stand_idle", "stand_idle_2"):
+        chest = joint_paths(spectator, spectator.clip(name), "neck", "head")
+        assert np.ptp(chest, axis=0).max() > 0.005
+
+
+def test_shipped_skeleton_and_clips_are_what_the_code_makes(spectator: Character) -> None:
+    skeleton = spectator_skeleton()
+    assert spectator.skeleton.names == skeleton.names
+    for name in ("parents", "rest_rotation", "rest_translation", "inverse_bind"):
+        np.testing.assert_allclose(
+            getattr(spectator.skeleton, name), getattr(skeleton, name), atol=1e-5
+        )
+    made = spectator_clips(skeleton)
+    assert [clip.name for clip in made] == [clip.name for clip in spectator.clips]
+    for clip, shipped in zip(made, spectator.clips, strict=True):
+        assert shipped.looping == clip.looping
+        assert shipped.duration == pytest.approx(clip.duration, abs=1e-4)
+        assert shipped.frame_count == clip.frame_count
+        dots = np.abs(np.einsum("fjk,fjk->fj", shipped.rotation, clip.rotation))
+        np.testing.assert_allclose(dots, 1.0, atol=1e-6, err_msg=clip.name)
+        np.testing.assert_allclose(shipped.translation, clip.translation, atol=1e-4)

@@ -1,0 +1,107 @@
+"""Measure how fast it runs here: medians and spread, with the environment.
+
+evaluate: all streams for one pose tick (sampling, kinematics, palettes, store).
+tick: a whole tick of a stadium without drawing, system by system.
+frame: pictures of a stadium from each camera.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from typing import Any
+
+from .demo import parse_size
+
+BENCHMARKS = ("evaluate", "tick", "frame")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``tifo bench``."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.add_argument("benchmark", choices=BENCHMARKS, help="what to measure")
+    parser.add_argument("--agents", type=int, default=65_000, metavar="N", help="seats, all taken")
+    parser.add_argument("--streams", type=int, default=256, metavar="N", help="animation streams")
+    parser.add_argument("--joints", type=int, default=82, metavar="N", help="joints (not in frame)")
+    parser.add_argument("--history", type=int, default=60, metavar="N", help="poses a stream keeps")
+    parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
+    parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
+    parser.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run a benchmark and print its figures; the exit code."""
+    if options.runs is not None and not 1 <= options.runs <= 100_000:
+        raise ValueError(f"--runs is {options.runs}, expected 1 to 100000")
+    if options.json:
+        print(json.dumps(_measure(options)))
+        return 0
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    with console.status(f"measuring {options.benchmark}"):
+        result = _measure(options)
+    _report(console, result)
+    return 0
+
+
+def _measure(options: argparse.Namespace) -> dict[str, Any]:
+    common = {"streams": options.streams, "history": options.history}
+    measure: Callable[[], dict[str, Any]]
+    if options.benchmark == "evaluate":
+        from ..benchmarks.evaluate import evaluate
+
+        def measure() -> dict[str, Any]:
+            return evaluate(joints=options.joints, runs=options.runs or 300, **common)
+
+    elif options.benchmark == "tick":
+        from ..benchmarks.tick import tick
+
+        def measure() -> dict[str, Any]:
+            return tick(
+                agents=options.agents, joints=options.joints, runs=options.runs or 300, **common
+            )
+
+    else:
+        from ..benchmarks.frame import frame
+
+        def measure() -> dict[str, Any]:
+            size = parse_size(options.size)
+            return frame(agents=options.agents, size=size, runs=options.runs or 10, **common)
+
+    return measure()
+
+
+def _report(console: Any, result: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    facts = ("agents", "streams", "joints", "history_poses", "width_pixels", "height_pixels")
+    sizes = ", ".join(f"{result[k]:,} {k.split('_')[0]}" for k in facts if k in result)
+    console.print(f"[bold]{result['benchmark']}[/]: {sizes}")
+    table = Table("", "median ms", "10 %", "90 %", "lowest", "runs")
+    for column in table.columns[1:]:
+        column.justify = "right"
+
+    def row(name: str, figures: dict[str, Any]) -> None:
+        keys = ("median_ms", "p10_ms", "p90_ms", "min_ms")
+        table.add_row(name, *(f"{figures[key]:.3f}" for key in keys), str(figures["runs"]))
+
+    row("whole", result)
+    for group in ("systems", "cameras"):
+        for name, figures in result.get(group, {}).items():
+            row(f"  {name}", figures)
+    console.print(table)
+    if "goal_tick_ms" in result:
+        console.print(f"the tick of a goal: {result['goal_tick_ms']:.2f} ms (median)")
+    for name, figures in result.get("cameras", {}).items():
+        levels = ", ".join(f"{count:,}" for count in figures["agents_at_level"])
+        console.print(
+            f"{name}: {figures['triangles']:,} triangles, {figures['uploaded_bytes']:,} bytes "
+            f"copied, agents by level {levels}"
+        )
+    for key in ("slice_bytes", "ring_bytes"):
+        if key in result:
+            console.print(f"{key.replace('_', ' ')}: {result[key]:,}")
+    where = ", ".join(f"{key} {value}" for key, value in result["environment"].items())
+    console.print(f"[dim]{where}[/]")
