@@ -33,7 +33,6 @@ lint: ## format, lint and types only
 		{ echo 'to format them: .venv/bin/ruff format .' >&2; exit 1; }
 	@RUFF_OUTPUT_FORMAT=concise .venv/bin/python -m ruff check --quiet .
 	@.venv/bin/python -m mypy --no-error-summary
-	@.venv/bin/python -m mypy --no-error-summary $(mypy_tests)
 
 clean: ## remove .venv and everything else that was made here
 	@rm -rf .venv .cache build dist out *.egg-info tests/golden/diffs
@@ -43,7 +42,3 @@ clean: ## remove .venv and everything else that was made here
 # Tests that open a window get a display of their own where there is none.
 with_display = $$(test -n "$$DISPLAY" || \
 	{ { command -v xauth && command -v xvfb-run; } >/dev/null && echo xvfb-run -a; })
-
-# Tests have no package, and need not annotate their helpers; what is annotated must hold.
-mypy_tests = --explicit-package-bases --allow-untyped-defs --allow-incomplete-defs \
-	--allow-untyped-calls tests

@@ -56,7 +56,9 @@ class Game:
         self._dragged = False
         self._before = perf_counter()
         self._clip = Clip(show.record, self.stage.size, RECORDED_RATE) if show.record else None
-        self.window.push_handlers(self, self.keys)
+        # One by one: handlers of one push replace each other where both have a method.
+        self.window.push_handlers(self.keys)
+        self.window.push_handlers(self)
         if show.seconds is not None:
             pyglet.clock.schedule_once(lambda _: self.window.dispatch_event("on_close"), show.seconds)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..components import View
 from ..engine.assets.character import Character
 from ..engine.assets.load import add_motions, load_character
+from ..engine.assets.simplify import with_lower_levels
 from ..engine.assets.spectator import builtin_spectator
 from ..engine.behaviour.events import Event
 from ..engine.clock import Clock
@@ -114,6 +115,7 @@ def character_of(spec: CrowdSpec, scale: float | None = None) -> Character:
     """The character that a spec names, with its motions; the built-in spectator if it names none.
 
     A spec that names BVH motions and no character gets the figure of bones of the first of them.
+    A file without coarser meshes gets some.
 
     Parameters
     ----------
@@ -130,5 +132,5 @@ def character_of(spec: CrowdSpec, scale: float | None = None) -> Character:
     file, motions = spec.character, spec.motions
     if not file and motions and motions[0].lower().endswith(".bvh"):
         file, motions = motions[0], motions[1:]
-    character = load_character(file, scale) if file else builtin_spectator()
+    character = with_lower_levels(load_character(file, scale)) if file else builtin_spectator()
     return add_motions(character, motions, scale) if motions else character

@@ -17,6 +17,7 @@ from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
 from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
+from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
 from .engine.streams import Stream, StreamPool
 from .scripting.camera import CameraMode, FreeCamera
@@ -61,6 +62,7 @@ __all__ = [
     "View",
     "add_motions",
     "add_systems",
+    "build_seats",
     "builtin_spectator",
     "camera_presets",
     "character_of",

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .character import Character, Material, SkinnedMesh
-from .levels import level_name
 from .edge_collapse import collapse_edges
+from .levels import level_name
 from .simplify_surface import Surface, connected, join_surface
 
 LEVEL_TRIANGLES = (800, 200)
@@ -29,7 +29,7 @@ LEVEL_TRIANGLES = (800, 200)
 _LEAST_EXTENT = 0.6
 """A level whose height or diagonal falls below this share of the original's is no body any more."""
 
-_PART_EXTENT, _LEAST_AREA, _PART_TRIANGLES = 0.1, 0.5, 10
+_PART_EXTENT, _LEAST_AREA, _PART_TRIANGLES = 0.07, 0.5, 10
 """A part this share of the body's size that keeps less than this share of its area, in fewer
 triangles, gets so many."""
 
@@ -37,9 +37,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-def with_lower_levels(
-    character: Character, targets: Sequence[int] = LEVEL_TRIANGLES
-) -> Character:
+def with_lower_levels(character: Character, targets: Sequence[int] = LEVEL_TRIANGLES) -> Character:
     """Give a character coarser meshes, unless it has some.
 
     Level k + 1 has about ``targets[k]`` triangles; where the level before has no more than that, or

@@ -63,7 +63,10 @@ def join_surface(character: Character) -> Surface:
     positions = np.concatenate([mesh.positions for mesh in meshes]).astype(np.float64)
     uvs = np.concatenate([mesh.uvs for mesh in meshes])
     triangles = np.concatenate(
-        [mesh.triangles.astype(np.int64) + first for mesh, first in zip(meshes, firsts, strict=True)]
+        [
+            mesh.triangles.astype(np.int64) + first
+            for mesh, first in zip(meshes, firsts, strict=True)
+        ]
     )
     size = max(float(np.ptp(positions, axis=0).max()), 1e-9)
     cells = np.round(positions / (_GRID * size)).astype(np.int64)

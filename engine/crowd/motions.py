@@ -167,7 +167,8 @@ def start_streams(
     """Start `streams` streams and share them out among the motions.
 
     Every motion gets at least one stream, and more the more agents will want it. Streams of one
-    motion differ in phase and by up to 8 % in speed. With fewer streams than motions, motions share.
+    motion differ in phase and by up to 8 % in speed. With fewer streams than motions, motions
+    share.
 
     Parameters
     ----------

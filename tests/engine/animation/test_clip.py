@@ -15,7 +15,7 @@ from tifo.engine.animation.clip import Clip, continuous_hemisphere, uniform_time
 Array = NDArray[Any]
 
 
-def _parts(keys: int = 3, joints: int = 2) -> dict[str, Array]:
+def _parts(keys: int = 3, joints: int = 2) -> dict[str, Any]:
     return {
         "rotation": np.tile(np.array([0, 0, 0, 1], np.float32), (keys, joints, 1)),
         "translation": np.zeros((keys, joints, 3), np.float32),

@@ -126,9 +126,7 @@ def _reference(clip: Clip, time: float, *, loop: bool) -> list[NDArray[Any]]:
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(
-        st.tuples(
-            st.integers(0, 2), st.floats(-50, 50, allow_subnormal=False), st.booleans()
-        ),
+        st.tuples(st.integers(0, 2), st.floats(-50, 50, allow_subnormal=False), st.booleans()),
         min_size=1,
         max_size=6,
     ),

@@ -26,7 +26,9 @@ def test_the_example_of_breadth_first_order() -> None:
 
 
 @given(st.lists(st.integers(0, 10**6), min_size=1, max_size=40), st.randoms())
-def test_order_sorts_by_depth_and_keeps_the_order_within_a_level(picks: list[int], mix: Any) -> None:
+def test_order_sorts_by_depth_and_keeps_the_order_within_a_level(
+    picks: list[int], mix: Any
+) -> None:
     # A tree whose joint k has a parent among the first k, with its joints renamed at random.
     tree = [-1, *(pick % k for k, pick in enumerate(picks[1:], start=1))]
     names = list(range(len(tree)))

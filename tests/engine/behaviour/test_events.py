@@ -21,7 +21,7 @@ def test_goals_are_for_home_or_away(side: Any) -> None:
     [(0.0, 1.0), (0.0, 1.0, 2.0, 3.0), (0.0, float("nan"), 1.0), (float("inf"), 0.0, 0.0)],
 )
 def test_balls_land_somewhere(place: Any) -> None:
-    with pytest.raises(ValueError, match="place is .*, expected three finite coordinates"):
+    with pytest.raises(ValueError, match=r"place is .*, expected three finite coordinates"):
         BallHit(place)
 
 

@@ -117,7 +117,7 @@ def test_agents_show_the_nearest_frame_round_and_round(
 
 @pytest.mark.parametrize("fps", [0.0, -30.0, np.nan, np.inf])
 def test_rates_are_positive(body: Skeleton, bank: ClipBank, fps: float) -> None:
-    with pytest.raises(ValueError, match="fps is .*, expected a positive number"):
+    with pytest.raises(ValueError, match=r"fps is .*, expected a positive number"):
         BakedPoses(body, bank, fps=fps)
 
 

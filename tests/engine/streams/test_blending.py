@@ -102,7 +102,10 @@ class Stage:
 
     def __init__(self, factories: ModuleType) -> None:
         body = factories.make_body()
-        clips = [factories.make_clip(body, "sit_idle", 1.3), factories.make_clip(body, "cheer", 0.7)]
+        clips = [
+            factories.make_clip(body, "sit_idle", 1.3),
+            factories.make_clip(body, "cheer", 0.7),
+        ]
         self.pool = StreamPool(body, ClipBank(body, clips), capacity=2)
         self.source = self.pool.add(0)
         self.pool.add(1, time=0.2)

@@ -178,8 +178,8 @@ def test_each_agent_follows_its_own_streams_head(slide_pool: SlidePool) -> None:
 
 
 def _offset(start: float, target: float, rate: float, since: float) -> float:
-    columns = (np.array([value], np.float32) for value in (start, target, rate))
-    return float(offset_at(*columns, np.array([since]))[0])
+    first, last, speed = (np.array([value], np.float32) for value in (start, target, rate))
+    return float(offset_at(first, last, speed, np.array([since]))[0])
 
 
 @pytest.mark.parametrize(

@@ -70,5 +70,7 @@ def test_an_own_function_must_answer_for_every_agent() -> None:
 
 @pytest.mark.parametrize("source", ["gaussian", 3, None])
 def test_other_sources_are_refused(source: Any) -> None:
-    with pytest.raises(ValueError, match="offsets is .*expected 'normal', 'uniform' or a function"):
+    with pytest.raises(
+        ValueError, match=r"offsets is .*expected 'normal', 'uniform' or a function"
+    ):
         initial_offsets(source, 2, 60, np.random.default_rng())

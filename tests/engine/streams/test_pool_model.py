@@ -10,6 +10,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import (
     Bundle,
+    MultipleResults,
     RuleBasedStateMachine,
     consumes,
     initialize,
@@ -76,7 +77,7 @@ class PoolMachine(RuleBasedStateMachine):
     )
     def add(
         self, clip: int, time: float, speed: float, history: int | None
-    ) -> Stream | object:
+    ) -> Stream | MultipleResults[Stream]:
         if len(self.models) == len(self.pool.alive):
             with pytest.raises(ValueError, match="all 4 stream rows are in use"):
                 self.pool.add(clip)
@@ -95,7 +96,7 @@ class PoolMachine(RuleBasedStateMachine):
 
     @rule(stream=removed)
     def use_a_stale_handle(self, stream: Stream) -> None:
-        with pytest.raises(ValueError, match="is not alive|was removed"):
+        with pytest.raises(ValueError, match=r"is not alive|was removed"):
             self.pool.seek(stream, 0.0)
 
     @rule(stream=streams)
@@ -187,7 +188,12 @@ def test_a_pool_behaves_as_its_model(factories: ModuleType) -> None:
     _, wraps = factories.make_slide(CLIP_SECONDS[1], base=5000.0)
     bank = ClipBank(skeleton, [stays, replace(wraps, looping=True)])
 
+    class Machine(PoolMachine):
+        """The machine on a fresh pool."""
+
+        def __init__(self) -> None:
+            super().__init__(StreamPool(skeleton, bank, capacity=4, history=5))
+
     run_state_machine_as_test(
-        lambda: PoolMachine(StreamPool(skeleton, bank, capacity=4, history=5)),
-        settings=settings(max_examples=40, stateful_step_count=40, deadline=None),
+        Machine, settings=settings(max_examples=40, stateful_step_count=40, deadline=None)
     )

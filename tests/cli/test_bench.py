@@ -1,0 +1,68 @@
+"""``tifo bench``: one JSON object with units in its names, and nothing else."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tifo.cli import main
+
+FIGURES = {"median_ms", "min_ms", "p10_ms", "p90_ms", "runs"}
+
+
+def figures(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, object]:
+    assert main(["bench", *words, "--json"]) == 0
+    out = capsys.readouterr().out
+    assert len(out.strip().splitlines()) == 1
+    result: dict[str, object] = json.loads(out)
+    assert set(result) >= FIGURES
+    return result
+
+
+def test_evaluate(capsys: pytest.CaptureFixture[str]) -> None:
+    result = figures(capsys, "evaluate", "--streams", "9", "--joints", "20", "--runs", "5")
+    assert (result["streams"], result["joints"], result["runs"]) == (9, 20, 5)
+    assert result["slice_bytes"] == 9 * 20 * 48
+
+
+def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
+    result = figures(
+        capsys, "tick", "--agents", "300", "--streams", "16", "--joints", "12", "--runs", "6"
+    )
+    systems = result["systems"]
+    assert isinstance(systems, dict)
+    assert set(systems) == {"behaviour", "transition", "controller", "history", "detail"}
+    assert all(set(figure) >= FIGURES for figure in systems.values())
+    assert result["goal_tick_ms"] > 0  # type: ignore[operator]
+
+
+@pytest.mark.gl
+def test_frame(capsys: pytest.CaptureFixture[str]) -> None:
+    result = figures(capsys, "frame", "--agents", "200", "--size", "80x60", "--runs", "2")
+    cameras = result["cameras"]
+    assert isinstance(cameras, dict)
+    assert set(cameras) == {"tv", "close", "bowl"}
+    assert all(camera["triangles"] > 0 for camera in cameras.values())
+
+
+def test_a_table_for_people(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "evaluate", "--streams", "4", "--joints", "5", "--runs", "3"]) == 0
+    assert "median ms" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("evaluate", "--streams", "0"),
+        ("evaluate", "--joints", "0"),
+        ("evaluate", "--runs", "0"),
+        ("tick", "--agents", "0"),
+        ("tick", "--history", "1"),
+    ],
+)
+def test_impossible_sizes_are_refused(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["bench", *words]) == 1
+    assert capsys.readouterr().err.startswith("tifo: ")

@@ -1,0 +1,134 @@
+"""A goal, seen from outside: who moves, when, and how it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tifo.components.motion import NEVER
+from tifo.engine.behaviour import Goal
+from tifo.engine.crowd.motions import Role
+from tifo.systems.simulation import Simulation
+
+MakeSimulation = Callable[..., Simulation]
+
+
+def _cheering(simulation: Simulation) -> np.ndarray:
+    crowd = simulation.crowd
+    return np.isin(crowd.motion.shown, crowd.library.roles[Role.CHEER])
+
+
+@pytest.mark.parametrize("poses", ["streams", "baked"])
+def test_most_supporters_cheer_within_two_seconds_and_all_calm_down_by_thirty(
+    simulate: MakeSimulation, poses: str
+) -> None:
+    simulation = simulate(poses=poses, sides=2, away_share=0.3, neutrals=0.0)
+    crowd = simulation.crowd
+    simulation.run(seconds=1.0)
+    before = crowd.motion.shown.copy()
+    simulation.send(Goal(0))
+    simulation.run(seconds=2.0)
+    present = crowd.seat.occupied
+    home, away = present & (crowd.team.side == 0), present & (crowd.team.side == 1)
+    changed = crowd.motion.shown != before
+    assert changed[home].mean() > 0.9
+    assert _cheering(simulation)[home].mean() > 0.9
+    assert _cheering(simulation)[away].mean() < 0.1
+    assert changed[~present].mean() < 0.2
+    simulation.run(seconds=28.0)
+    state = crowd.motion
+    assert (state.calm_at == NEVER).all()
+    np.testing.assert_array_equal(state.wanted, state.innate)
+    # Who began another innate motion just now may be blending still.
+    blending = np.zeros(len(crowd), bool)
+    if crowd.transition is not None:
+        blending = crowd.transition.duration[0] > 0
+    np.testing.assert_array_equal(state.shown[~blending], state.innate[~blending])
+    assert blending.mean() < 0.1
+
+
+def test_what_is_drawn_follows_what_is_wanted(simulate: MakeSimulation) -> None:
+    simulation = simulate(neutrals=0.0)
+    crowd = simulation.crowd
+    pool, anim = crowd.pool, crowd.anim
+    assert pool is not None
+    assert anim is not None
+    for _ in range(20):
+        simulation.run(seconds=0.2)
+        if simulation.clock.tick == 48:
+            simulation.send(Goal(0))
+        np.testing.assert_array_equal(
+            pool.clip[anim.row[0]], crowd.library.clips[crowd.motion.shown]
+        )
+        assert (anim.start[0] <= 28.0).all()
+
+
+def test_a_goal_between_two_frames_takes_effect_at_the_next_pose_tick(
+    simulate: MakeSimulation,
+) -> None:
+    simulation = simulate()
+    motion = simulation.crowd.motion
+    simulation.advance(2 / 60)
+    simulation.send(Goal(0))
+    simulation.advance(0.0)
+    assert (motion.react_at == NEVER).all()
+    # Tick 3 is no pose tick.
+    simulation.advance(1 / 60)
+    assert simulation.clock.tick == 3
+    assert (motion.react_at == NEVER).all()
+    simulation.advance(1 / 60)
+    assert (motion.react_at != NEVER).mean() > 0.8
+    assert motion.react_at.min() >= simulation.clock.pose_tick + 4
+
+
+def test_a_blend_is_finished_before_the_next_begins(simulate: MakeSimulation) -> None:
+    simulation = simulate()
+    crowd = simulation.crowd
+    transition = crowd.transition
+    assert transition is not None
+    simulation.run(seconds=0.1)
+    crowd.motion.wanted[0] = 4
+    crowd.motion.calm_at[0] = NEVER - 1
+    simulation.run(seconds=2 / 60)
+    begin = int(transition.begin[0, 0])
+    assert (crowd.motion.shown[0], transition.duration[0, 0]) == (4, 12.0)
+    crowd.motion.wanted[0] = 6
+    seen = []
+    while crowd.motion.shown[0] == 4:
+        seen.append(simulation.clock.pose_tick)
+        simulation.run(seconds=2 / 60)
+    # The first picture that needs it no more is that of tick begin + 12 + 1.
+    assert simulation.clock.pose_tick == begin + 13
+    assert crowd.motion.shown[0] == 6
+    assert transition.begin[0, 0] == begin + 13
+
+
+def test_a_baked_agent_changes_clip_at_once(simulate: MakeSimulation) -> None:
+    simulation = simulate(poses="baked")
+    crowd = simulation.crowd
+    assert crowd.pool is None
+    assert crowd.baked is not None
+    poses, clips = crowd.baked
+    crowd.motion.wanted[0] = 4
+    crowd.motion.calm_at[0] = NEVER - 1
+    simulation.run(seconds=2 / 60)
+    assert clips.clip[0] == crowd.library.clips[4]
+    shown = crowd.palettes(np.array([0]), simulation.clock.pose_tick)[0]
+    first, count = int(poses.start[clips.clip[0]]), int(poses.frames[clips.clip[0]])
+    own = poses.palettes[first : first + count]
+    assert (np.abs(own - shown).max(axis=(1, 2, 3)) == 0).any()
+
+
+def test_a_character_without_clips_stands_still(
+    simulate: MakeSimulation, factories: object
+) -> None:
+    spec = simulate().spec
+    still = factories.make_character(())  # type: ignore[attr-defined]
+    simulation = Simulation(spec, still)
+    simulation.send(Goal(0))
+    simulation.run(seconds=1.0)
+    shown = simulation.crowd.palettes(np.arange(10), simulation.clock.pose_tick, 0.3)
+    np.testing.assert_allclose(shown, np.broadcast_to(np.eye(3, 4), shown.shape), atol=1e-6)
+    simulation.close()
