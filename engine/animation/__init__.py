@@ -3,7 +3,7 @@
 from .clip import Clip
 from .clip_bank import ClipBank
 from .kinematics import Kinematics
-from .pose import PoseLayout
+from .pose import pack_poses, unpack_poses
 from .skeleton import Skeleton
 
-__all__ = ["Clip", "ClipBank", "Kinematics", "PoseLayout", "Skeleton"]
+__all__ = ["Clip", "ClipBank", "Kinematics", "Skeleton", "pack_poses", "unpack_poses"]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clip import Clip
-from .pose import CHANNELS, PoseLayout
+from .pose import CHANNELS, pack_poses
 from .skeleton import Skeleton
 
 
@@ -32,7 +32,7 @@ class ClipBank:
         If there is no clip or a clip is made for another number of joints.
     """
 
-    __slots__ = ("clips", "duration", "frames", "intervals", "layout", "looping", "start")
+    __slots__ = ("clips", "duration", "frames", "intervals", "joint_count", "looping", "start")
 
     def __init__(self, skeleton: Skeleton, clips: Sequence[Clip]) -> None:
         if not clips:
@@ -43,7 +43,7 @@ class ClipBank:
                     f"clip '{clip.name}' has {clip.joint_count} joints, "
                     f"the skeleton has {skeleton.joint_count}"
                 )
-        self.layout = PoseLayout(skeleton)
+        self.joint_count = skeleton.joint_count
         self.clips = tuple(clips)
         counts = np.array([clip.frame_count for clip in clips], dtype=np.int64)
         self.start = np.concatenate([[0], np.cumsum(counts)[:-1]])
@@ -51,7 +51,7 @@ class ClipBank:
         self.duration = np.array([clip.duration for clip in clips], dtype=np.float64)
         self.looping = np.array([clip.looping for clip in clips], dtype=np.bool_)
         self.frames = np.concatenate(
-            [self.layout.pack(clip.rotation, clip.translation, clip.scale) for clip in clips]
+            [pack_poses(clip.rotation, clip.translation, clip.scale) for clip in clips]
         )
 
     def index(self, name: str) -> int:
@@ -104,12 +104,11 @@ class ClipBank:
         clip, time, looping
             As for `locate`.
         out, scratch
-            (S, 10 J) float32 arrays to work in; the pose rows are in `out` afterwards, in the
-            order of `PoseLayout`, streams outer.
+            (S, 10, J) float32 arrays to work in; the poses are in `out` afterwards.
 
         Returns
         -------
-        (S, 10 J) float32
+        (S, 10, J) float32
             `out`.
         """
         before, weight = self.locate(clip, time, looping)
@@ -117,13 +116,13 @@ class ClipBank:
         np.take(self.frames, before, axis=0, out=out, mode="clip")
         np.take(self.frames, after, axis=0, out=scratch, mode="clip")
         np.subtract(scratch, out, out=scratch)
-        np.multiply(scratch, weight[:, None], out=scratch)
+        np.multiply(scratch, weight[:, None, None], out=scratch)
         np.add(out, scratch, out=out)
         return out
 
     def sample_one(self, clip: int, time: float) -> NDArray[np.float32]:
-        """Pose row (1, 10 J) of one clip at one time, wrapped if the clip loops."""
-        shape = (1, CHANNELS * self.layout.joint_count)
+        """Pose row (1, 10, J) of one clip at one time, wrapped if the clip loops."""
+        shape = (1, CHANNELS, self.joint_count)
         out, scratch = np.empty(shape, np.float32), np.empty(shape, np.float32)
         which = np.array([clip])
         return self.sample(which, np.array([time]), self.looping[which], out, scratch)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .pose import CHANNELS, PoseLayout
+from .pose import CHANNELS, ROTATION, SCALE, TRANSLATION
 from .skeleton import Skeleton
 
 Array = NDArray[np.float32]
@@ -31,6 +31,8 @@ class _Level:
     """(3, 4, j, S): the parents' model matrices, gathered."""
     rotation: tuple[Array, ...]
     """x, y, z, w of the local rotation, (j, S) each."""
+    pose: Array
+    """(10, j, S): the local poses, streams inner."""
     vector: Array
     """(3, j, S): x, y, z of the local rotation."""
     quaternion: Array
@@ -67,8 +69,6 @@ class Kinematics:
         "_joints",
         "_levels",
         "_palettes",
-        "_pose",
-        "layout",
         "mixed",
         "scratch",
         "streams",
@@ -76,14 +76,11 @@ class Kinematics:
 
     def __init__(self, skeleton: Skeleton, streams: int) -> None:
         self.streams = streams
-        self.layout = PoseLayout(skeleton)
-        count = CHANNELS * skeleton.joint_count
-        self.mixed = np.empty((streams, count), dtype=np.float32)
+        self.mixed = np.empty((streams, CHANNELS, skeleton.joint_count), dtype=np.float32)
         self.scratch = np.empty_like(self.mixed)
-        self._pose = np.empty((count, streams), dtype=np.float32)
         self._palettes: Array | None = None
         self._joints = skeleton.joint_count
-        self._levels = _make_levels(skeleton, self.layout, self._pose, streams)
+        self._levels = _make_levels(skeleton, streams)
 
     def evaluate(self, pose: Array, palettes: Array, rows: NDArray[np.int64] | None = None) -> None:
         """Write the palettes of S poses.
@@ -91,17 +88,16 @@ class Kinematics:
         Parameters
         ----------
         pose
-            (S, 10 J) float32 local poses in the order of `PoseLayout`; rotations need not be
-            normalised.
+            (S, 10, J) float32 local poses; rotations need not be normalised.
         palettes
             (R, J, 3, 4) float32, written in place.
         rows
             (S,) which row of `palettes` each pose goes to; the first S rows if None.
         """
-        self._pose[...] = pose.T
         previous: Array | None = None
         target = palettes[: self.streams] if rows is None else self._own_palettes()
         for level in self._levels:
+            level.pose[...] = pose[:, :, level.joints].transpose(1, 2, 0)
             _local_matrices(level)
             if previous is not None and level.parents is not None:
                 np.take(previous, level.parents, axis=2, out=level.parent_model, mode="clip")
@@ -140,13 +136,12 @@ class Kinematics:
         return out
 
 
-def _make_levels(
-    skeleton: Skeleton, layout: PoseLayout, pose: Array, streams: int
-) -> tuple[_Level, ...]:
+def _make_levels(skeleton: Skeleton, streams: int) -> tuple[_Level, ...]:
     widest = max(level.stop - level.start for level in skeleton.levels)
     buffers = {
         name: np.empty(planes * widest * streams, dtype=np.float32)
         for name, planes in (
+            ("pose", CHANNELS),
             ("parent", 12),
             ("local", 12),
             ("term", 12),
@@ -156,7 +151,7 @@ def _make_levels(
         )
     }
     made = []
-    for number, (joints, rows) in enumerate(zip(skeleton.levels, layout.levels, strict=True)):
+    for number, joints in enumerate(skeleton.levels):
         j = joints.stop - joints.start
 
         def plane(
@@ -165,7 +160,7 @@ def _make_levels(
             full = (*shape, width, streams)
             return buffers[name][: int(np.prod(full))].reshape(full)
 
-        block = pose[rows].reshape(CHANNELS, j, streams)
+        block = plane("pose", CHANNELS)
         model = np.empty((3, 4, j, streams), dtype=np.float32)
         local = model if number == 0 else plane("local", 3, 4)
         squares, products = plane("squares", 4), plane("products", 6)
@@ -184,9 +179,10 @@ def _make_levels(
                 parent_model=plane("parent", 3, 4),
                 rotation=(block[0], block[1], block[2], block[3]),
                 vector=block[:3],
-                quaternion=block[:4],
-                translation=block[4:7],
-                scale=block[7:10],
+                pose=block,
+                quaternion=block[ROTATION],
+                translation=block[TRANSLATION],
+                scale=block[SCALE],
                 local=local,
                 local_rows=tuple(tuple(local[r, c] for c in range(4)) for r in range(3)),
                 local_linear=local[:, :3],

@@ -1,10 +1,9 @@
-"""Where each number of a pose stands in a planar pose block.
+"""Local poses of many streams in one array.
 
-A pose block holds the local transforms of S streams as one (10 J, S) float32 array: joints outer,
-streams inner. The rows go level by level of the joint tree, and within a level of j joints first
-the 4 j rotation components, then 3 j translation and 3 j scale components. So a level is one
-contiguous (10, j, S) block that stays in cache while kinematics works on it, and mixing two whole
-poses is one operation over the array.
+A pose block is (S, 10, J) float32: one row a stream, and in it ten channels, each over all joints:
+x y z w of the rotation, x y z of the translation, x y z of the scale. A whole pose is one
+contiguous row, so poses are gathered, mixed and scattered as rows; a channel of all joints is
+contiguous in it, so the dot products of blending need no strides.
 """
 
 from __future__ import annotations
@@ -12,63 +11,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .skeleton import Skeleton
+Array = NDArray[np.float32]
 
 CHANNELS = 10
-"""Numbers a joint: 4 of rotation (xyzw), 3 of translation, 3 of scale."""
+ROTATION, TRANSLATION, SCALE = slice(0, 4), slice(4, 7), slice(7, 10)
 
 
-class PoseLayout:
-    """Row numbers of a skeleton's pose blocks.
+def pack_poses(rotation: Array, translation: Array, scale: Array) -> Array:
+    """Pose block (S, 10, J) of (S, J, 4) rotations xyzw, (S, J, 3) translations and scales."""
+    joined = np.concatenate([rotation, translation, scale], axis=2, dtype=np.float32)
+    return np.ascontiguousarray(joined.transpose(0, 2, 1))
 
-    Parameters
-    ----------
-    skeleton
-        Whose joints the rows belong to.
 
-    Attributes
-    ----------
-    rows
-        (J, 10) int32: row of each channel of each joint, in the order x y z w of the rotation,
-        x y z of the translation, x y z of the scale.
-    levels
-        One slice of rows per level of the joint tree.
-
-    Examples
-    --------
-    For a root with two children, the root's rows are 0 to 9, and the x of the second child's
-    translation is row 10 + 4 * 2 + 1 = 19.
-    """
-
-    __slots__ = ("joint_count", "levels", "rows")
-
-    def __init__(self, skeleton: Skeleton) -> None:
-        self.joint_count = skeleton.joint_count
-        self.rows = np.empty((skeleton.joint_count, CHANNELS), dtype=np.int32)
-        channel = np.arange(CHANNELS)
-        slices = []
-        for level in skeleton.levels:
-            count = level.stop - level.start
-            base = CHANNELS * level.start
-            self.rows[level] = base + channel * count + np.arange(count)[:, None]
-            slices.append(slice(base, base + CHANNELS * count))
-        self.levels = tuple(slices)
-
-    def pack(
-        self,
-        rotation: NDArray[np.float32],
-        translation: NDArray[np.float32],
-        scale: NDArray[np.float32],
-    ) -> NDArray[np.float32]:
-        """Pose block rows, streams outer: (S, J, 4), (S, J, 3), (S, J, 3) -> (S, 10 J) float32."""
-        joined = np.concatenate([rotation, translation, scale], axis=2)
-        block = np.empty((len(joined), CHANNELS * self.joint_count), dtype=np.float32)
-        block[:, self.rows.ravel()] = joined.reshape(len(joined), -1)
-        return block
-
-    def unpack(
-        self, block: NDArray[np.float32]
-    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-        """Inverse of `pack`: (S, 10 J) -> (S, J, 4), (S, J, 3) and (S, J, 3)."""
-        joined = block[:, self.rows.ravel()].reshape(len(block), self.joint_count, CHANNELS)
-        return joined[..., :4], joined[..., 4:7], joined[..., 7:]
+def unpack_poses(block: Array) -> tuple[Array, Array, Array]:
+    """Rotations (S, J, 4), translations and scales (S, J, 3) of a pose block, as views."""
+    joined = block.transpose(0, 2, 1)
+    return joined[..., ROTATION], joined[..., TRANSLATION], joined[..., SCALE]

@@ -137,7 +137,8 @@ def _layers(frames: NDArray[np.float32]) -> TextureArray:
             f"{len(frames)} baked frames, at most {FRAMES_PER_LAYER**2} can be drawn; "
             "bake fewer clips or use streams"
         )
-    texture = TextureArray((frames.shape[1], FRAMES_PER_LAYER), layers, TextureFormat.RGBA32F)
+    width = max(frames.shape[1], 1)
+    texture = TextureArray((width, FRAMES_PER_LAYER), layers, TextureFormat.RGBA32F)
     for layer in range(layers):
         part = frames[layer * FRAMES_PER_LAYER : (layer + 1) * FRAMES_PER_LAYER]
         texture.write(np.ascontiguousarray(part), layer=layer)

@@ -25,7 +25,11 @@ OFFSETS = (
     (0.6, 0.1, 0.0),
     (-0.6, 0.1, 0.0),
 )
-CLIPS = ("sit_idle", "sit_idle_2", "stand_idle", "clap", "cheer", "cheer_2", "dismay", "wave")
+CLIPS = (
+    *("walk", "sit_idle", "sit_idle_2", "stand_idle", "clap", "cheer", "cheer_2", "dismay"),
+    "wave",
+)
+"""The first is for nothing that spectators do, so motions and clips are numbered differently."""
 
 
 def reference_models(parents: Sequence[int], q: Array, t: Array, s: Array) -> Array:

@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
                 _print_description(entry, tree=options.tree)
         described.append(entry)
     if options.json:
-        print(json.dumps({"ok": not failed, "files": described}, indent=2, allow_nan=False))
+        print(json.dumps({"ok": not failed, "files": described}, allow_nan=False))
     return int(failed)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...animation.kinematics import Kinematics
+from ...animation.pose import pack_poses
 from ...animation.skeleton import Skeleton
 from ..character import Material, SkinnedMesh
 from ..levels import level_name
@@ -131,7 +132,7 @@ def _clapping(skeleton: Skeleton, vertices: Vertices, weights: NDArray[np.float6
     kinematics = Kinematics(skeleton, 1)
     palettes = np.empty((1, skeleton.joint_count, 3, 4), dtype=np.float32)
     first = (part[:1] for part in (clip.rotation, clip.translation, clip.scale))
-    kinematics.evaluate(kinematics.layout.pack(*first), palettes)
+    kinematics.evaluate(pack_poses(*first), palettes)
     turn = np.einsum("vj,jab->vab", weights, palettes[0].astype(np.float64))
     posed: Vertices = np.einsum("vab,vb->va", turn[:, :, :3], vertices) + turn[:, :, 3]
     return posed

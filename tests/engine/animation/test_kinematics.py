@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tifo.engine.animation import Kinematics, Skeleton
+from tifo.engine.animation.pose import pack_poses
 from tifo.engine.animation.skeleton import breadth_first_order
 
 Pose = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
@@ -72,7 +73,7 @@ def test_palettes_and_positions_are_those_of_single_matrices(
     pose = _poses(rng, streams, len(parents))
     work = Kinematics(skeleton, streams)
     palettes = np.full((streams, len(parents), 3, 4), np.nan, np.float32)
-    work.evaluate(work.layout.pack(*pose), palettes)
+    work.evaluate(pack_poses(*pose), palettes)
     joints = rng.permutation(len(parents))[: max(1, len(parents) // 2)]
     positions = work.joint_positions(joints)
     assert positions.shape == (streams, len(joints), 3)
@@ -97,9 +98,9 @@ def test_rows_receive_their_pose_and_the_others_stay(
     pose = _poses(rng, len(rows), 6)
     work = Kinematics(skeleton, len(rows))
     palettes = np.full((total, 6, 3, 4), 7.0, np.float32)
-    work.evaluate(work.layout.pack(*pose), palettes, rows)
+    work.evaluate(pack_poses(*pose), palettes, rows)
     dense = np.empty((len(rows), 6, 3, 4), np.float32)
-    work.evaluate(work.layout.pack(*pose), dense)
+    work.evaluate(pack_poses(*pose), dense)
     np.testing.assert_array_equal(palettes[rows], dense)
     untouched = np.setdiff1d(np.arange(total), rows)
     assert (palettes[untouched] == 7.0).all()
@@ -110,7 +111,7 @@ def test_first_rows_of_a_larger_array_are_written_without_rows(factories: Module
     work = Kinematics(skeleton, 2)
     palettes = np.full((3, 7, 3, 4), 7.0, np.float32)
     clip = factories.make_still(skeleton, "rest")
-    pose = work.layout.pack(clip.rotation, clip.translation, clip.scale)
+    pose = pack_poses(clip.rotation, clip.translation, clip.scale)
     work.evaluate(np.repeat(pose, 2, axis=0), palettes)
     # The rest pose is the bind pose, so nothing is deformed.
     identity = np.broadcast_to(np.eye(3, 4), (2, 7, 3, 4))
@@ -125,9 +126,7 @@ def test_a_bent_elbow_by_hand(factories: ModuleType) -> None:
     rotation[0, 1] = 0, 0, 5, 5
     work = Kinematics(skeleton, 1)
     palettes = np.empty((1, 3, 3, 4), np.float32)
-    pose = work.layout.pack(
-        rotation, skeleton.rest_translation[None], np.ones((1, 3, 3), np.float32)
-    )
+    pose = pack_poses(rotation, skeleton.rest_translation[None], np.ones((1, 3, 3), np.float32))
     work.evaluate(pose, palettes)
     np.testing.assert_allclose(
         work.joint_positions(np.array([2, 0]))[0], [[1, 1, 0], [0, 0, 0]], atol=1e-6
@@ -141,7 +140,7 @@ def test_evaluating_again_forgets_the_poses_before(factories: ModuleType) -> Non
     rng = np.random.default_rng(5)
     skeleton = _skeleton(factories, [-1, 0, 0, 1, 3], rng, rotated=True)
     work, fresh = Kinematics(skeleton, 3), Kinematics(skeleton, 3)
-    first, second = (work.layout.pack(*_poses(rng, 3, 5)) for _ in range(2))
+    first, second = (pack_poses(*_poses(rng, 3, 5)) for _ in range(2))
     used, expected = (np.empty((3, 5, 3, 4), np.float32) for _ in range(2))
     work.evaluate(first, used)
     work.evaluate(second, used)
@@ -156,6 +155,6 @@ def test_the_length_of_a_quaternion_does_not_matter(factories: ModuleType, facto
     q, t, s = _poses(rng, 1, 3)
     work = Kinematics(skeleton, 1)
     plain, scaled = (np.empty((1, 3, 3, 4), np.float32) for _ in range(2))
-    work.evaluate(work.layout.pack(q, t, s), plain)
-    work.evaluate(work.layout.pack(q * np.float32(factor), t, s), scaled)
+    work.evaluate(pack_poses(q, t, s), plain)
+    work.evaluate(pack_poses(q * np.float32(factor), t, s), scaled)
     np.testing.assert_allclose(scaled, plain, atol=1e-5)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from tifo.engine.animation.clip import Clip
 from tifo.engine.animation.kinematics import Kinematics
+from tifo.engine.animation.pose import pack_poses
 from tifo.engine.assets.character import Character, SkinnedMesh
 from tifo.engine.assets.spectator import builtin_spectator
 from tifo.engine.assets.spectator.clips import spectator_clips
@@ -27,7 +28,7 @@ def palettes(character: Character, clip: Clip) -> NDArray[np.float32]:
     """(F, J, 3, 4) skinning matrices of every key."""
     kinematics = Kinematics(character.skeleton, clip.frame_count)
     out = np.empty((clip.frame_count, clip.joint_count, 3, 4), dtype=np.float32)
-    kinematics.evaluate(kinematics.layout.pack(clip.rotation, clip.translation, clip.scale), out)
+    kinematics.evaluate(pack_poses(clip.rotation, clip.translation, clip.scale), out)
     return out
 
 

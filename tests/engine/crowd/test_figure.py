@@ -65,9 +65,9 @@ def test_exact_names_win_over_names_that_contain_them(factories: ModuleType) -> 
 
 def test_hand_slots_and_shoulders_are_no_hands(factories: ModuleType) -> None:
     names = ["handslot.l", "LeftShoulder", "handslot.r", "RightFinger", "head"]
-    names += ["hand.l", "hand.r"]
+    names += ["palm.l", "palm.r"]
     found = _found(factories.make_character(names=names))
-    assert (found["hand_l"], found["hand_r"]) == ("hand.l", "hand.r")
+    assert (found["hand_l"], found["hand_r"]) == ("palm.l", "palm.r")
 
 
 def test_other_bodies_get_the_joints_that_reach_farthest(factories: ModuleType) -> None:

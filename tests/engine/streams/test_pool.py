@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tifo.engine.animation import ClipBank
+from tifo.engine.animation.pose import unpack_poses
 from tifo.engine.streams import Stream, StreamPool
 
 SlidePool = Callable[..., StreamPool]
@@ -237,7 +238,7 @@ def test_markers_are_the_joints_places(factories: ModuleType) -> None:
     pool.add(0)
     stream = pool.add("cheer", time=0.3)
     _tick(pool, 0)
-    q, t, s = (part[0] for part in bank.layout.unpack(bank.sample_one(4, 0.3)))
+    q, t, s = (part[0] for part in unpack_poses(bank.sample_one(bank.index("cheer"), 0.3)))
     places = factories.reference_models(character.skeleton.parents, q, t, s)[joints, :3, 3]
     np.testing.assert_allclose(pool.store.ring_markers[0, stream.row, :, :3], places, atol=1e-5)
     # The bind pose: a head at 0.9 + 0.4 + 0.3 m over hips at 0.9 m.

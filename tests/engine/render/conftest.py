@@ -1,0 +1,196 @@
+"""What the tests of drawing share: shaders run for their numbers, and pictures to compare with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tifo.components import AgentAnimID, Appearance, BakedAnim, Placement, Transition
+from tifo.engine.assets.character import Material, SkinnedMesh
+from tifo.engine.streams import StreamPool
+from tifo.engine.streams.baked import BakedPoses
+
+GOLDEN = Path(__file__).resolve().parents[2] / "golden"
+
+Array = NDArray[Any]
+Streamed = tuple[StreamPool, AgentAnimID, Transition]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--regenerate-golden",
+        action="store_true",
+        help="write what is drawn now to tests/golden instead of comparing with it",
+    )
+
+
+def probe_mesh(joints: int) -> SkinnedMesh:
+    """Four vertices a joint, at the origin and one metre along each axis, moved by it alone.
+
+    Where they end up tells the joint's whole affine palette.
+    """
+    count = 4 * joints
+    owner = np.zeros((count, 4), np.uint16)
+    owner[:, 0] = np.repeat(np.arange(joints), 4)
+    weights = np.zeros((count, 4), np.float32)
+    weights[:, 0] = 1.0
+    points = np.concatenate([np.zeros((1, 3)), np.eye(3)])
+    return SkinnedMesh(
+        name="probes",
+        positions=np.tile(points, (joints, 1)).astype(np.float32),
+        normals=np.tile(np.array([0, 1, 0], np.float32), (count, 1)),
+        uvs=np.zeros((count, 2), np.float32),
+        colors=np.ones((count, 4), np.float32),
+        joints=owner,
+        weights=weights,
+        triangles=np.arange(count - count % 3, dtype=np.uint32).reshape(-1, 3),
+    )
+
+
+def place_agents(agents: int) -> Placement:
+    """Everybody at the origin, unturned, in natural size."""
+    zeros = np.zeros(agents, np.float32)
+    return Placement(np.zeros((3, agents), np.float32), zeros, zeros + np.float32(1.0))
+
+
+def paint_agents(agents: int, rng: np.random.Generator) -> Appearance:
+    """Random colours."""
+    colours = rng.integers(0, 256, (5, agents, 4), dtype=np.uint8)
+    return Appearance(*colours)
+
+
+@dataclass
+class ShaderCrowd:
+    """Runs the crowd's vertex shaders over the real tables and textures.
+
+    Parameters
+    ----------
+    poses
+        What `CrowdColumns.poses` holds.
+    placement, appearance
+        Of the agents.
+    """
+
+    poses: Streamed | tuple[BakedPoses, BakedAnim]
+    placement: Placement
+    appearance: Appearance
+    owned: list[Any] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        from tifo.engine.render.agent_tables import AgentTables
+        from tifo.engine.render.pose_textures import BakedTextures, PoseTextures, StreamTextures
+
+        self.textures: PoseTextures
+        if len(self.poses) == 3:
+            self.textures = StreamTextures(self.poses[0])
+        else:
+            self.textures = BakedTextures(self.poses[0])
+        self.tables = AgentTables(len(self.placement.yaw), 3 if len(self.poses) == 3 else 1)
+        self.owned += [self.textures, self.tables]
+
+    def update(self, tick: int) -> int:
+        """Copy what changed; bytes copied."""
+        copied = self.textures.update(tick)
+        copied += self.tables.update_place(self.placement)
+        copied += self.tables.update_looks(self.appearance)
+        if len(self.poses) == 3:
+            _, anim, transition = self.poses
+            return copied + self.tables.update_streams(anim, transition, 0, tick)
+        baked, clips = self.poses
+        return copied + self.tables.update_baked(clips, baked, tick)
+
+    def skinned(
+        self,
+        mesh: SkinnedMesh,
+        agents: Sequence[int] | Array,
+        tick: int,
+        alpha: float,
+        *,
+        output: str = "f_place",
+        surface: int = 255,
+    ) -> NDArray[np.float32]:
+        """(K, V, ...) output of the skinning shader for K agents and V vertices."""
+        from tifo.engine.gl import Buffer, Program, VertexArray, VertexInput, capture
+        from tifo.engine.render.body_mesh import VERTEX, make_batches
+
+        (batch,) = make_batches((mesh,), (Material("probe"),))
+        vertices = batch.vertices.copy()
+        vertices["surface"] = surface
+        program = Program(
+            "crowd/skinned.vert.glsl", defines=self.textures.defines, feedback=(output,)
+        )
+        buffer = Buffer(vertices)
+        ids = self._ids(agents)
+        array = VertexArray(
+            program, [VertexInput(buffer, VERTEX, normalised=("color",)), ids.input()]
+        )
+        self._prepare(program, tick, alpha, markers=False)
+        program["view"] = program["projection"] = np.eye(4, dtype=np.float32)
+        out = capture(program, array, None, len(agents))[output]
+        for thing in (array, buffer, ids.buffer, program):
+            thing.delete()
+        return np.asarray(out, np.float32)
+
+    def palettes(
+        self, agents: Sequence[int] | Array, tick: int, alpha: float
+    ) -> NDArray[np.float32]:
+        """(K, J, 3, 4) palettes that the shader skins with, for agents that stand at the origin."""
+        joints = (
+            self.poses[0].skeleton.joint_count
+            if len(self.poses) == 3
+            else self.poses[0].palettes.shape[1]
+        )
+        places = self.skinned(probe_mesh(joints), agents, tick, alpha)
+        points = places.reshape(len(agents), joints, 4, 3)
+        columns = np.concatenate([points[:, :, 1:] - points[:, :, :1], points[:, :, :1]], axis=2)
+        return np.ascontiguousarray(columns.swapaxes(2, 3))
+
+    def _ids(self, agents: Sequence[int] | Array) -> Any:
+        from tifo.engine.render.skinned_pass import InstanceList
+
+        ids = InstanceList()
+        ids.write(np.asarray(agents, np.uint32))
+        return ids
+
+    def _prepare(self, program: Any, tick: int, alpha: float, *, markers: bool) -> None:
+        self.tables.bind(program, tick, alpha)
+        self.textures.bind(program, markers=markers)
+
+    def delete(self) -> None:
+        """Delete everything on the GPU."""
+        for thing in self.owned:
+            thing.delete()
+        self.owned.clear()
+
+
+@pytest.fixture
+def shader_crowd(gl: Any) -> Iterator[Any]:
+    """Make crowds whose vertex shaders can be run for their numbers; see `ShaderCrowd`."""
+    made: list[ShaderCrowd] = []
+
+    def make(
+        poses: Streamed | tuple[BakedPoses, BakedAnim],
+        placement: Placement | None = None,
+        appearance: Appearance | None = None,
+    ) -> ShaderCrowd:
+        if len(poses) == 3:
+            agents = poses[1].row.shape[1]
+        else:
+            agents = len(poses[1].clip)
+        crowd = ShaderCrowd(
+            poses,
+            place_agents(agents) if placement is None else placement,
+            paint_agents(agents, np.random.default_rng(0)) if appearance is None else appearance,
+        )
+        made.append(crowd)
+        return crowd
+
+    yield make
+    for crowd in made:
+        crowd.delete()
