@@ -1,4 +1,4 @@
-"""What it costs to evaluate all streams for one pose tick: sampling, kinematics, palettes, store."""
+"""What it costs to evaluate all streams for one pose tick, from sampling to the store."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from .measure import environment, spread, time_calls
 from .synthetic import synthetic_character
 
 
-def evaluate(*, streams: int, joints: int, history: int, runs: int, seed: int = 1) -> dict[str, Any]:
+def evaluate(
+    *, streams: int, joints: int, history: int, runs: int, seed: int = 1
+) -> dict[str, Any]:
     """Time whole evaluations of `streams` running clip streams.
 
     Parameters

@@ -96,7 +96,7 @@ def _box() -> SkinnedMesh:
     weights[:, 0] = 1.0
     return SkinnedMesh(
         "box",
-        (box.vertices + [0, 0.875, 0]).astype(np.float32),
+        (box.vertices + np.array([0, 0.875, 0])).astype(np.float32),
         np.asarray(box.vertex_normals, np.float32),
         np.zeros((count, 2), np.float32),
         np.ones((count, 4), np.float32),

@@ -60,7 +60,9 @@ class Game:
         self.window.push_handlers(self.keys)
         self.window.push_handlers(self)
         if show.seconds is not None:
-            pyglet.clock.schedule_once(lambda _: self.window.dispatch_event("on_close"), show.seconds)
+            pyglet.clock.schedule_once(
+                lambda _: self.window.dispatch_event("on_close"), show.seconds
+            )
 
     def run(self) -> None:
         """Play until the window closes."""

@@ -32,8 +32,8 @@ GOAL_AT = 0.25
 def render(show: Show, console: Console) -> int:
     """Render a show to files; the exit code.
 
-    Without ``--screenshot`` and ``--record`` it writes ``tifo.png``, and ``tifo.mp4`` where clips can
-    be written.
+    Without ``--screenshot`` and ``--record`` it writes ``tifo.png``, and ``tifo.mp4`` where clips
+    can be written.
     """
     with console.status("building the stadium"):
         simulation, camera = make_simulation(show)

@@ -46,9 +46,7 @@ class Overlay:
         self._message.text = text
         self._message_left = MESSAGE_SECONDS
 
-    def draw(
-        self, delta: float, simulation: tifo.Simulation, counts: Any, *, paused: bool
-    ) -> None:
+    def draw(self, delta: float, simulation: tifo.Simulation, counts: Any, *, paused: bool) -> None:
         """Draw the labels; `delta` is the time since the last frame in seconds."""
         width, height = self._window.get_size()
         self._smooth += 0.1 * (delta - self._smooth)

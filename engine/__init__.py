@@ -1,1 +1,1 @@
-"""What the systems call: pure functions and small classes, with no esper and no systems in sight."""
+"""What the systems call: pure functions and small classes that know neither esper nor systems."""

@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 class TifoError(Exception):
-    """Base class of the errors that tell the user what to do; the command line prints only these."""
+    """Base class of the errors that tell the user what to do; the command line prints these."""
 
 
 class AssetError(TifoError):

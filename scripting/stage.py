@@ -48,9 +48,7 @@ class Stage:
         simulation.schedule.frame_systems.append(self._system)
 
     @classmethod
-    def offscreen(
-        cls, simulation: Simulation, size: tuple[int, int], *, samples: int = 4
-    ) -> Stage:
+    def offscreen(cls, simulation: Simulation, size: tuple[int, int], *, samples: int = 4) -> Stage:
         """A stage with a GL context of its own that needs no display."""
         create_offscreen_context()
         return cls(simulation, size, samples=samples)

@@ -20,6 +20,7 @@ from ..engine.clock import Clock
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.crowd.stadium import build_seats, build_stadium_mesh
+from ..engine.crowd.stadium_mesh import StadiumMesh
 from ..engine.streams.offsets import OffsetSource
 from .crowd import Crowd, spawn_crowd
 from .detail import DetailSystem
@@ -100,9 +101,10 @@ class Simulation:
             esper.create_entity(View(view, projection, height))
 
     def build_mesh(self) -> None:
-        """Add the stadium's own geometry to the world, for drawing."""
+        """Add the stadium's own geometry to the world, for drawing, unless it is there."""
         with self.active():
-            esper.create_entity(build_stadium_mesh(self.plan))
+            if not esper.get_component(StadiumMesh):
+                esper.create_entity(build_stadium_mesh(self.plan))
 
     def close(self) -> None:
         """Delete the world; the simulation can't be used any more."""

@@ -41,7 +41,8 @@ class Clip:
     Raises
     ------
     ValueError
-        For wrong shapes, no keys, a negative or non-finite duration or values.
+        For wrong shapes, no keys, several keys in no time, a negative or non-finite duration or
+        values.
     """
 
     name: str
@@ -68,6 +69,8 @@ class Clip:
                 )
         if not np.isfinite(self.duration) or self.duration < 0:
             raise ValueError(f"duration of clip '{self.name}' is {self.duration}, expected >= 0")
+        if self.duration == 0 and self.frame_count > 1:
+            raise ValueError(f"clip '{self.name}' has {self.frame_count} keys and no duration")
         for name in ("rotation", "translation", "scale"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ValueError(f"{name} of clip '{self.name}' has values that are not finite")

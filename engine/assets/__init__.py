@@ -1,0 +1,1 @@
+"""Characters and motions: read from files, written to them, built in."""

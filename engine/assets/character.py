@@ -1,4 +1,4 @@
-"""What the readers return: a skeleton with the meshes that it deforms and the clips that move it."""
+"""What the readers return: a skeleton, the meshes that it deforms, the clips that move it."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +39,8 @@ class BallHit:
 
     def __post_init__(self) -> None:
         """Check the place."""
-        if len(self.place) != 3 or not all(math.isfinite(value) for value in self.place):
+        numbers = all(isinstance(value, Real) and math.isfinite(value) for value in self.place)
+        if len(self.place) != 3 or not numbers:
             raise ValueError(
                 f"place is {self.place!r}, expected three finite coordinates in metres"
             )

@@ -1,0 +1,1 @@
+"""The crowd before it moves: seats, stadium, motions, looks, and who is seen how."""

@@ -17,6 +17,9 @@ from numpy.typing import NDArray
 from ..animation.clip import Clip
 from ..streams.pool import StreamPool
 
+SEAM = 0.6
+"""Radians that a joint may turn at the seam of a loop."""
+
 
 class Role(Enum):
     """What a motion is for."""
@@ -96,8 +99,9 @@ class MotionLibrary:
 def sort_motions(clips: Sequence[Clip]) -> MotionLibrary:
     """Sort a character's clips into roles by their names.
 
-    A role that no clip matches is played by another role's motions, and by the first clip if
-    nothing matches at all; a character with one clip uses it for everything.
+    Clips that don't end where they begin are no loops, whatever the file says, and are left out.
+    A role that no clip matches is played by another role's motions. If no name matches at all, the
+    first clip is the calm one and the second one celebrates; a single clip does everything.
 
     Raises
     ------
@@ -111,7 +115,7 @@ def sort_motions(clips: Sequence[Clip]) -> MotionLibrary:
     weight: list[float] = []
     for index, clip in enumerate(clips):
         pattern = _match(clip.name)
-        if pattern is not None and clip.looping:
+        if pattern is not None and clip.looping and _closes(clip):
             kept.append(index)
             role_of.append(pattern.role)
             weight.append(pattern.innate)
@@ -200,6 +204,12 @@ def start_streams(
         time = rng.uniform(0.0, float(pool.bank.duration[clip]))
         rows.append(pool.add(clip, time=time, speed=rng.uniform(0.92, 1.08)).row)
     return MotionStreams(first=first + np.int32(rows[0]), count=wanted)
+
+
+def _closes(clip: Clip) -> bool:
+    """Whether no joint turns by more than `SEAM` from the last key to the first."""
+    dots = np.abs(np.sum(clip.rotation[0] * clip.rotation[-1], axis=1))
+    return bool(2.0 * np.arccos(np.clip(dots.min(), 0.0, 1.0)) < SEAM)
 
 
 def _match(name: str) -> _Pattern | None:

@@ -83,7 +83,7 @@ class BakedPoses:
     ) -> NDArray[np.int64]:
         """Row of `palettes` that each agent shows.
 
-        A 40-frame clip baked at 30 a second shows frame 5 at 1.5 s and speed 1, since 45 mod 40 = 5.
+        A 40-frame clip baked at 30 Hz shows frame 5 at 1.5 s and speed 1, since 45 mod 40 = 5.
 
         Parameters
         ----------

@@ -27,7 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--history", type=int, default=60, metavar="N", help="poses a stream keeps")
     parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object and nothing else"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

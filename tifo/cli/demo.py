@@ -37,7 +37,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--character", metavar="FILE", help=texts["character"] + " (.glb .gltf .bvh)")
     what.add_argument("--motions", metavar="FILE", nargs="+", help=texts["motions"])
     what.add_argument(
-        "--scale", type=float, metavar="METRES", help="metres a unit of BVH files, guessed if absent"
+        "--scale",
+        type=float,
+        metavar="METRES",
+        help="metres a unit of BVH files, guessed if absent",
     )
     kinds: dict[str, Any] = {"occupancy": float, "poses": str, "offsets": str}
     for name in _FROM_SPEC:
@@ -48,7 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument("--lod", choices=("on", "off"), help=texts["lod"])
     how = parser.add_argument_group("the picture")
     how.add_argument("--size", default="1280x720", metavar="WxH", help="pixels, 1280x720 if absent")
-    how.add_argument("--camera", choices=("tv", "close", "bowl"), default="tv", help="where to begin")
+    how.add_argument(
+        "--camera", choices=("tv", "close", "bowl"), default="tv", help="where to begin"
+    )
     how.add_argument("--fullscreen", action="store_true", help="open the window fullscreen")
     how.add_argument("--no-vsync", action="store_true", help="draw as often as possible")
     how.add_argument("--headless", action="store_true", help="no window: render offscreen")

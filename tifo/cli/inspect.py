@@ -111,9 +111,8 @@ def _size(character: Character) -> list[float]:
     corners = [mesh.positions for mesh in character.meshes if len(mesh.positions)]
     if not corners:
         return [0.0, 0.0, 0.0]
-    low = np.min([mesh.min(axis=0) for mesh in corners], axis=0)
-    high = np.max([mesh.max(axis=0) for mesh in corners], axis=0)
-    return [round(float(side), 4) for side in high - low]
+    size: list[float] = np.ptp(np.concatenate(corners), axis=0).tolist()
+    return [round(side, 4) for side in size]
 
 
 def _mesh(mesh: SkinnedMesh, materials: tuple[Material, ...]) -> dict[str, Any]:

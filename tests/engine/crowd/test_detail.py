@@ -175,3 +175,17 @@ def test_a_small_character_in_large_units_is_culled_where_it_stands() -> None:
     detail = Detail()
     select_detail(detail, placement, np.ones(1, bool), 175.0, view, levels=True)
     assert sum(len(ids) for ids in detail.agents) == 1
+
+
+def test_coarseness_draws_as_if_everyone_were_smaller() -> None:
+    rng = np.random.default_rng(4)
+    placement = _placement(rng, 300, 40.0)
+    few, many = (_camera(np.zeros(3), 0.0, 0.0, 1.0, pixels) for pixels in (360, 720))
+    coarse, small = Detail(), Detail()
+    present = np.ones(300, bool)
+    select_detail(coarse, placement, present, HEIGHT, many, levels=True, coarseness=2.0)
+    # Half as many pixels high, everyone is half as tall.
+    select_detail(small, placement, present, HEIGHT, few, levels=True)
+    assert sum(len(ids) > 0 for ids in coarse.agents) >= 2
+    for found, expected in zip(coarse.agents, small.agents, strict=True):
+        np.testing.assert_array_equal(found, expected)

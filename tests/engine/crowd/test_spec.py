@@ -37,6 +37,8 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "away_share": st.floats(0.0, 0.5),
     "streams": st.integers(1, 256),
     "history": st.integers(2, 254),
+    "poses": st.sampled_from(["streams", "baked"]),
+    "offsets": st.sampled_from(["normal", "uniform"]),
     "seed": st.integers(0, 2**63 - 1),
     "lod": st.booleans(),
     "character": TEXT,
@@ -72,6 +74,8 @@ def test_round_trip(tmp_path: Path, values: dict[str, Any]) -> None:
     ("name", "value", "allowed"),
     [
         ("layout", "arena", "'bowl' or 'stand'"),
+        ("poses", "frozen", "'streams' or 'baked'"),
+        ("offsets", 3, "'normal' or 'uniform'"),
         ("seats", 0, "from 1 to 1000000"),
         ("seats", -5, "from 1 to 1000000"),
         ("seats", 10**9, "from 1 to 1000000"),

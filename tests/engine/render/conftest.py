@@ -194,3 +194,71 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
     yield make
     for crowd in made:
         crowd.delete()
+
+
+CLEAR = 24
+"""Levels of 255 that a channel may be off before its pixel counts as different."""
+
+
+class Golden:
+    """Compares pictures with those of ``tests/golden``, or writes them there.
+
+    Only the software rasteriser draws the same picture everywhere, so elsewhere nothing is
+    compared: the test then checks no more than what it asserts of the picture itself.
+    """
+
+    def __init__(self, regenerate: bool, comparable: bool) -> None:
+        self._regenerate = regenerate
+        self._comparable = comparable
+
+    def check(
+        self, name: str, picture: NDArray[np.uint8], *, mean: float = 1.5, share: float = 0.02
+    ) -> None:
+        """Fail if (H, W, 3) uint8 `picture` is not the one called `name`.
+
+        Parameters
+        ----------
+        name, picture
+            File name without suffix, and what was drawn.
+        mean
+            Levels of 255 that all channels may be off in the mean.
+        share
+            Share of pixels that may be clearly different.
+        """
+        from PIL import Image
+
+        path = GOLDEN / f"{name}.png"
+        if self._regenerate:
+            GOLDEN.mkdir(exist_ok=True)
+            Image.fromarray(picture).save(path, optimize=True)
+        if not self._comparable:
+            return
+        assert path.is_file(), f"{path} is missing; draw it with --regenerate-golden and look at it"
+        with Image.open(path) as file:
+            wanted = np.asarray(file.convert("RGB"))
+        assert wanted.shape == picture.shape, f"{name} is {picture.shape}, not {wanted.shape}"
+        off = np.abs(picture.astype(int) - wanted)
+        different = float((off.max(axis=2) > CLEAR).mean())
+        files = [GOLDEN / "diffs" / f"{name}-{kind}.png" for kind in ("actual", "difference")]
+        if off.mean() <= mean and different <= share:
+            for file in files:
+                file.unlink(missing_ok=True)
+            return
+        files[0].parent.mkdir(exist_ok=True)
+        Image.fromarray(picture).save(files[0])
+        # Small differences are made visible.
+        strong = ((off / 255.0) ** 0.25 * 255.0).astype(np.uint8)
+        Image.fromarray(strong).save(files[1])
+        pytest.fail(
+            f"{name} is off by {off.mean():.2f} levels in the mean (at most {mean}) and clearly "
+            f"in {different:.1%} of the pixels (at most {share:.1%}); see {files[1]}"
+        )
+
+
+@pytest.fixture
+def golden(gl: Any, request: pytest.FixtureRequest) -> Golden:
+    """Compares pictures with golden ones."""
+    from tifo.engine.gl import describe_context
+
+    regenerate = request.config.getoption("--regenerate-golden", default=False)
+    return Golden(bool(regenerate), "llvmpipe" in describe_context().renderer.lower())
