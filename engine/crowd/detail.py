@@ -16,6 +16,9 @@ from ...components.view import View
 MESH_PIXELS = (110.0, 42.0, 17.0)
 """Agents at least this tall are drawn with the first, second or third mesh; others as figures."""
 
+_BLOCK = 8192
+"""Agents a matrix product: larger products are spread over threads, which wait for each other."""
+
 
 def frustum_planes(view_projection: NDArray[np.float32]) -> NDArray[np.float32]:
     """Planes left, right, bottom, top, near as (5, 4) float32: inside where ``n . p + d >= 0``.
@@ -81,19 +84,26 @@ def select_detail(
         Factor on `MESH_PIXELS`: 2 draws an agent as coarsely as one half as tall otherwise.
     """
     planes = frustum_planes(view.projection @ view.view)
-    radius = placement.scale * np.float32(0.75 * height)
-    # The sphere's middle is half a height above the feet: two thirds of its radius.
-    distance = planes[:, :3] @ placement.position
-    distance += planes[:, 3:]
-    distance += planes[:, 1:2] * (radius * np.float32(2.0 / 3.0))
-    inside = distance.min(axis=0) >= -radius
-    inside &= present
+    forward = -view.view[2]
+    # The sphere's radius is three quarters of a height; its middle is half a height above the feet.
+    # So a plane's distance, radius added, is linear in the place and the scale of the agent, and
+    # one matrix product gives it for all planes, and the depth with it.
+    body = np.concatenate([placement.position, placement.scale[None]])
+    rows = np.zeros((6, 4), np.float32)
+    rows[:5, :3], rows[5, :3] = planes[:, :3], forward[:3]
+    rows[:5, 3] = height * (0.5 * planes[:, 1] + 0.75)
+    distance = np.empty((6, body.shape[1]), np.float32)
+    for first in range(0, body.shape[1], _BLOCK):
+        block = slice(first, first + _BLOCK)
+        np.matmul(rows, body[:, block], out=distance[:, block])
+    inside = present.copy()
+    for row, plane in zip(distance, planes, strict=False):
+        inside &= row >= -plane[3]
     agents = np.flatnonzero(inside).astype(np.uint32)
     if not levels:
         detail.agents = (agents, agents[:0], agents[:0], agents[:0])
         return
-    forward = -view.view[2]
-    depth = forward[:3] @ placement.position[:, agents] + forward[3]
+    depth = distance[5, agents] + forward[3]
     pixels = pixel_heights(placement.scale[agents], height, view, depth)
     level = np.searchsorted(-coarseness * np.array(MESH_PIXELS, np.float32), -pixels)
     detail.agents = tuple(agents[level == number] for number in Level)

@@ -36,7 +36,7 @@ class _Drawn:
 
 
 class InstanceList:
-    """Ids of the agents that one level draws, as an instance attribute."""
+    """Ids of the agents that one level draws, as an attribute."""
 
     def __init__(self) -> None:
         self.buffer = Buffer(4 * 1024, "stream")
@@ -50,9 +50,10 @@ class InstanceList:
         self.buffer.write(agents, orphan=True)
         return agents.nbytes
 
-    def input(self) -> VertexInput:
-        """The attribute ``agent``."""
-        return VertexInput(self.buffer, [Attribute("agent", 1, np.uint32, integer=True)], divisor=1)
+    def input(self, divisor: int = 1) -> VertexInput:
+        """The attribute ``agent``: one an instance, or one a vertex if `divisor` is 0."""
+        layout = [Attribute("agent", 1, np.uint32, integer=True)]
+        return VertexInput(self.buffer, layout, divisor=divisor)
 
 
 class SkinnedPass:

@@ -1,6 +1,9 @@
 #version 330 core
-// A spectator of a few pixels: a quad around seven joints, which the fragments draw as strokes.
+// A spectator of a few pixels: a point sprite around seven joints, which the fragments draw as
+// strokes. One vertex an agent, and light and air are worked out here: software rasterisers spend
+// most of their time on whatever is done a vertex more, or a fragment more, than needed.
 #include "lib/frame.glsl"
+#include "lib/light.glsl"
 #include "lib/agent.glsl"
 #include "lib/pose.glsl"
 
@@ -8,19 +11,28 @@ in uint agent;
 
 uniform float body_height;     // metres, before the agent's scale
 uniform float pixel;           // size of a pixel one metre before the camera
+uniform vec4 viewport;         // left, bottom, width, height in pixels
 
-flat out vec2 f_joint[7];      // about the hips, in the picture plane, metres
+// In the picture plane, pixels about the hips.
+flat out vec2 f_hips;          // pixels from the framebuffer's corner
+flat out vec4 f_head;          // top of the spine, middle of the head
+flat out vec4 f_hands;
+flat out vec4 f_feet;
+flat out vec4 f_radius;        // torso, head, arm, leg
 flat out vec3 f_skin;
 flat out vec3 f_hair;
 flat out vec3 f_shirt;
 flat out vec3 f_trousers;
-flat out float f_size;         // the agent's height, metres
-flat out float f_pixel;        // size of a pixel at the agent, metres
-flat out float f_facing;       // 1 faces the camera, -1 turns its back
-flat out vec3 f_place;
-out vec2 f_at;
+flat out vec2 f_side;          // how much lighter a pixel to the right is; height of the hairline
 
+const int HEAD = 0;
+const int CHEST = 1;
 const int HIPS = 2;
+
+vec3 lit(vec3 albedo, vec3 normal, float open_sky, vec3 place)
+{
+    return haze(tone(shade(albedo, normal, 0.3, open_sky)), place);
+}
 
 void main()
 {
@@ -28,37 +40,56 @@ void main()
     Body body = fetch_body(id);
     Shown sources[2];
     int count = fetch_shown(id, sources);
-    mat3 rotation = mat3(view);
-    vec3 hips = vec3(0.0);
-    vec2 low = vec2(1e9);
-    vec2 high = vec2(-1e9);
     vec3 joint[7];
-    for (int k = 0; k < 7; ++k) {
-        vec3 model = vec3(0.0);
-        for (int s = 0; s < count; ++s)
-            model += sources[s].share * pose_texel(sources[s], k).xyz;
-        joint[k] = to_stadium(body, model);
-    }
-    hips = joint[HIPS];
-    for (int k = 0; k < 7; ++k) {
-        f_joint[k] = (rotation * (joint[k] - hips)).xy;
-        low = min(low, f_joint[k]);
-        high = max(high, f_joint[k]);
-    }
+    for (int k = 0; k < 7; ++k)
+        joint[k] = vec3(0.0);
+    for (int s = 0; s < count; ++s)
+        for (int k = 0; k < 7; ++k)
+            joint[k] += sources[s].share * pose_texel(sources[s], k).xyz;
+
+    mat3 rotation = mat3(view);
+    vec3 hips = to_stadium(body, joint[HIPS]);
     vec4 centre = view * vec4(hips, 1.0);
-    f_size = body_height * body.scale;
-    f_pixel = pixel * -centre.z;
-    float border = 0.12 * f_size + f_pixel;
-    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-    f_at = mix(low - border, high + border, corner);
-    vec3 forward = vec3(body.turn.x, 0.0, body.turn.y);
-    f_facing = dot(forward, normalize(eye - hips));
-    f_place = hips;
-    f_skin = agent_colour(id, 0);
-    f_hair = agent_colour(id, 1);
-    f_shirt = agent_colour(id, 2);
-    f_trousers = agent_colour(id, 3);
+    float metre = 1.0 / max(pixel * -centre.z, 1e-6);
+    vec2 at[7];
+    for (int k = 0; k < 7; ++k)
+        at[k] = metre * body.scale * (rotation * turned(body, joint[k] - joint[HIPS])).xy;
+    float unit = metre * body_height * body.scale / 1.75;
+    vec2 up = unit * vec2(view[1][0], view[1][1]);
+    f_head = vec4(mix(at[CHEST], at[HEAD], 0.35), at[HEAD] + 0.05 * up);
+    f_hands = vec4(at[3], at[4]);
+    f_feet = vec4(at[5], at[6]);
+    // Strokes are never thinner than the picture can hold.
+    f_radius = max(unit * vec4(0.165, 0.125, 0.055, 0.085), 0.4);
+
+    vec2 low = min(min(min(at[3], at[4]), min(at[5], at[6])), min(f_head.zw, vec2(0.0)));
+    vec2 high = max(max(max(at[3], at[4]), max(at[5], at[6])), max(f_head.zw, vec2(0.0)));
+    float border = max(f_radius.x, f_radius.y) + 0.5;
+
+    // The picture plane's right and back, and a little up, as a round body's normals.
+    vec3 right = vec3(view[0][0], view[1][0], view[2][0]);
+    vec3 towards = vec3(view[0][2], view[1][2], view[2][2]) + vec3(0.0, 0.35, 0.0);
+    vec3 normal = normalize(towards);
+    vec3 grey = vec3(0.4);
+    float left_light = dot(shade(grey, normalize(towards - 0.8 * right), 0.3, 0.95), vec3(1.0));
+    float right_light = dot(shade(grey, normalize(towards + 0.8 * right), 0.3, 0.95), vec3(1.0));
+    f_side.x = (right_light - left_light) / (right_light + left_light) / f_radius.x;
+    f_skin = lit(agent_colour(id, 0), normal, 0.95, hips);
+    f_hair = lit(agent_colour(id, 1), normal, 0.95, hips);
+    f_shirt = lit(agent_colour(id, 2), normal, 0.95, hips);
+    // Legs lie in the shade of the people around.
+    f_trousers = lit(agent_colour(id, 3), normal, 0.6, hips);
+    bool away = dot(vec3(body.turn.x, 0.0, body.turn.y), eye - hips) < 0.0;
+    f_side.y = away ? -1e3 : f_head.w + 0.02 * unit;
+
     // Drawn at the front of the body, so that seats and steps don't cut into it.
-    vec4 clip = projection * (centre + vec4(f_at, 0.3, 0.0));
-    gl_Position = clip;
+    vec4 clip = projection * (centre + vec4(0.0, 0.0, 0.3, 0.0));
+    f_hips = viewport.xy + viewport.zw * (0.5 * clip.xy / clip.w + 0.5);
+    // A point whose middle is out of the picture is not drawn at all, so the middle is moved to the
+    // border and the point made wide enough to cover the figure from there.
+    vec2 middle = f_hips + 0.5 * (low + high) - viewport.xy;
+    vec2 inside = clamp(middle, vec2(0.5), viewport.zw - 0.5);
+    vec2 reach = 0.5 * (high - low) + border + abs(middle - inside);
+    gl_PointSize = 2.0 * max(reach.x, reach.y);
+    gl_Position = vec4((2.0 * inside / viewport.zw - 1.0) * clip.w, clip.zw);
 }
