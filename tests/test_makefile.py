@@ -41,9 +41,10 @@ GOOD = """case "$*" in
 *'-m venv'*) mkdir -p .venv/bin && cp "$0" .venv/bin/python ;;
 -) cat >/dev/null ;;
 '- '*) cat >/dev/null; exit "${GL:-0}" ;;
+*fontconfig*) exit "${TEXT:-0}" ;;
 --version) echo Python 3.12.3 ;;
 esac"""
-"""A Python that makes environments; what it makes draws if GL is 0."""
+"""A Python that makes environments; what it makes draws if GL is 0, and writes if TEXT is 0."""
 
 
 @pytest.fixture
@@ -60,7 +61,12 @@ def run_setup(tmp_path: Path) -> Setup:
         (commands / name).symlink_to(found)
 
     def run(
-        target: str, user: int = 1000, gl: int = 0, **pretended: str
+        target: str,
+        user: int = 1000,
+        gl: int = 0,
+        text: int = 0,
+        display: str = "",
+        **pretended: str,
     ) -> subprocess.CompletedProcess[str]:
         for name, body in {"id": f"echo {user}", **pretended}.items():
             script = commands / name.replace("python3_", "python3.").replace("_", "-")
@@ -74,7 +80,13 @@ def run_setup(tmp_path: Path) -> Setup:
             check=False,
             stdin=subprocess.DEVNULL,
             cwd=tmp_path,
-            env={"PATH": str(commands), "CALLS": str(tmp_path / "calls"), "GL": str(gl)},
+            env={
+                "PATH": str(commands),
+                "CALLS": str(tmp_path / "calls"),
+                "GL": str(gl),
+                "TEXT": str(text),
+                "DISPLAY": display,
+            },
         )
 
     return run
@@ -206,7 +218,24 @@ def test_no_display_is_no_error(run_setup: Setup) -> None:
     process = run_setup("test", python3=GOOD, apt_get="exit 9")
     assert process.returncode == 0
     assert "tests that open a window are skipped" in process.stderr
-    assert process.stderr.strip().endswith("--no-install-recommends xvfb xauth")
+    assert process.stderr.strip().endswith("--no-install-recommends xvfb xauth libfontconfig1")
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="fontconfig is for Linux")
+def test_windows_need_fontconfig(run_setup: Setup, tmp_path: Path) -> None:
+    assert run_setup("demo", text=1, python3=GOOD).returncode == 0
+    process = run_setup("demo", text=1, display=":0", python3=GOOD, apt_get="exit 9")
+    assert process.returncode == 1
+    assert process.stderr.splitlines()[-1] == (
+        "tifo: run: sudo apt-get install -y --no-install-recommends libfontconfig1"
+    )
+    record = 'echo "$*" >>"$CALLS"'
+    process = run_setup(
+        "test", user=0, text=1, python3=GOOD, apt_get=record, xvfb_run="true", xauth="true"
+    )
+    assert process.returncode == 0, process.stderr
+    installed = (tmp_path / "calls").read_text("utf-8").splitlines()[-1]
+    assert installed.endswith(" libfontconfig1")
 
 
 def test_a_wrong_target_is_refused(run_setup: Setup) -> None:

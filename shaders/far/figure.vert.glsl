@@ -86,10 +86,10 @@ void main()
     vec4 clip = projection * (centre + vec4(0.0, 0.0, 0.3, 0.0));
     f_hips = viewport.xy + viewport.zw * (0.5 * clip.xy / clip.w + 0.5);
     // A point whose middle is out of the picture is not drawn at all, so the middle is moved to the
-    // border and the point made wide enough to cover the figure from there.
+    // border, from where the point covers what of the figure is in the picture.
     vec2 middle = f_hips + 0.5 * (low + high) - viewport.xy;
     vec2 inside = clamp(middle, vec2(0.5), viewport.zw - 0.5);
-    vec2 reach = 0.5 * (high - low) + border + abs(middle - inside);
+    vec2 reach = 0.5 * (high - low) + border;
     gl_PointSize = 2.0 * max(reach.x, reach.y);
     gl_Position = vec4((2.0 * inside / viewport.zw - 1.0) * clip.w, clip.zw);
 }

@@ -182,6 +182,17 @@ def test_the_display(
     assert word in check.finding
 
 
+def test_missing_fonts_are_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor, "find_library", lambda name: None)
+    check = doctor.check_text(has_display=True)
+    assert check.status == "warning"
+    assert check.finding == "needs libfontconfig and libfreetype, missing here"
+    assert check.fix.endswith("apt-get install libfontconfig1")
+    assert doctor.check_text(has_display=False).status == "note"
+    monkeypatch.setattr(doctor, "find_library", lambda name: f"lib{name}.so.1")
+    assert doctor.check_text(has_display=True).status == "ok"
+
+
 @pytest.mark.gl
 def test_this_machine_can_run_the_demo(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["doctor", "--json"]) == 0

@@ -12,6 +12,7 @@ import platform
 import re
 import sys
 from collections.abc import Iterator, Mapping
+from ctypes.util import find_library
 from dataclasses import asdict, dataclass, field
 from importlib import import_module, metadata
 from importlib.resources import files
@@ -111,6 +112,8 @@ def examine() -> Iterator[Check]:
     yield _check_spectator()
     display = _check_display()
     yield display
+    if sys.platform.startswith("linux"):
+        yield check_text(has_display=display.status == "ok")
     yield from check_graphics(has_display=display.status == "ok")
 
 
@@ -138,6 +141,17 @@ def check_package(package: Package) -> Check:
         repair = f"pip install --force-reinstall '{wanted}'"
         return Check(package.name, status, finding, repair, details)
     return Check(package.name, "ok", version, details=details)
+
+
+def check_text(*, has_display: bool) -> Check:
+    """Whether text can be written in windows on Linux, where pyglet asks fontconfig for fonts."""
+    absent = [name for name in ("fontconfig", "freetype") if not find_library(name)]
+    if not absent:
+        return Check("text in windows", "ok", "fontconfig and freetype")
+    libraries = " and ".join(f"lib{name}" for name in absent)
+    fix = "on Debian or Ubuntu: apt-get install libfontconfig1"
+    status: Status = "warning" if has_display else "note"
+    return Check("text in windows", status, f"needs {libraries}, missing here", fix)
 
 
 def check_graphics(*, has_display: bool) -> Iterator[Check]:

@@ -241,8 +241,8 @@ class Golden:
         different = float((off.max(axis=2) > CLEAR).mean())
         files = [GOLDEN / "diffs" / f"{name}-{kind}.png" for kind in ("actual", "difference")]
         if off.mean() <= mean and different <= share:
-            for file in files:
-                file.unlink(missing_ok=True)
+            for stale in files:
+                stale.unlink(missing_ok=True)
             return
         files[0].parent.mkdir(exist_ok=True)
         Image.fromarray(picture).save(files[0])

@@ -175,3 +175,18 @@ def test_a_new_stage_shows_what_the_old_one_did(gl: Any, simulation: Simulation)
     fresh.draw(look, 0.0)
     np.testing.assert_array_equal(fresh.pixels(), later)
     fresh.close()
+
+
+def test_state_that_others_do_not_expect_is_put_back(gl: Any, simulation: Simulation) -> None:
+    from tifo.engine.gl.api import gl as api
+    from tifo.scripting.stage import Stage
+
+    stage = Stage(simulation, SIZE)
+    for name in ("bowl", "close"):
+        stage.draw(camera(simulation, name))
+        for switch in ("GL_SAMPLE_ALPHA_TO_COVERAGE", "GL_PROGRAM_POINT_SIZE", "GL_BLEND"):
+            assert not api.glIsEnabled(getattr(api, switch)), switch
+        written = api.GLboolean(0)
+        api.glGetBooleanv(api.GL_DEPTH_WRITEMASK, written)
+        assert written.value
+    stage.close()

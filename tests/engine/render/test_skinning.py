@@ -126,7 +126,9 @@ def joined(character: Character) -> SkinnedMesh:
     """All meshes of a character as one, without triangles."""
     meshes = character.meshes
     fields = ("positions", "normals", "uvs", "colors", "joints", "weights")
-    columns = {name: np.concatenate([getattr(m, name) for m in meshes]) for name in fields}
+    columns: dict[str, Any] = {
+        name: np.concatenate([getattr(m, name) for m in meshes]) for name in fields
+    }
     return SkinnedMesh("all", **columns, triangles=np.zeros((1, 3), np.uint32))
 
 
@@ -134,5 +136,5 @@ def thinned(mesh: SkinnedMesh, most: int) -> SkinnedMesh:
     """Every n-th vertex."""
     step = -(-len(mesh.positions) // most)
     fields = ("positions", "normals", "uvs", "colors", "joints", "weights")
-    columns = {name: getattr(mesh, name)[::step] for name in fields}
+    columns: dict[str, Any] = {name: getattr(mesh, name)[::step] for name in fields}
     return SkinnedMesh("some", **columns, triangles=np.zeros((1, 3), np.uint32))
