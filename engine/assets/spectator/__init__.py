@@ -24,7 +24,7 @@ def builtin_spectator() -> Character:
     Returns
     -------
     Character
-        24 joints, 13 clips, and three levels of detail of about 2,900, 850 and 230 triangles (the
+        24 joints, 13 clips, and three levels of detail of about 2,800, 780 and 260 triangles (the
         lower two in `Character.lower_levels`). Its materials are ``skin``, ``hair``, ``shirt``,
         ``trousers`` and ``shoes``. It stands 1.75 m tall at the origin and faces +Z; when seated,
         its feet stay there and the seat is 0.44 m high from z = -0.25 to -0.65.

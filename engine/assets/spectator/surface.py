@@ -11,6 +11,7 @@ from ...animation.kinematics import Kinematics
 from ...animation.pose import pack_poses
 from ...animation.skeleton import Skeleton
 from ..character import Material, SkinnedMesh
+from ..gltf_mesh import vertex_normals
 from ..levels import level_name
 from .body import REGIONS, occlusion, region_fields, surface_normals
 from .borders import cut
@@ -43,7 +44,7 @@ class _Level:
     """Corners of the eyes' outline; 0 leaves the face out."""
 
 
-_LEVELS = (_Level(2380, 0.28, 8), _Level(640, 0.22, 4), _Level(156, 0.16, 0))
+_LEVELS = (_Level(2380, 0.28, 8), _Level(640, 0.22, 4), _Level(168, 0.16, 0))
 
 
 def _names(level: int) -> list[str]:
@@ -75,7 +76,8 @@ def _level_meshes(
     vertices, triangles, material = _half(vertices, triangles, _LEVELS[level].snap)
     vertices, triangles = mirrored(vertices, triangles)
     material = np.concatenate([material, material])
-    normals = surface_normals(vertices)
+    # A coarse surface cuts corners, where the normals of the smooth body would point anywhere.
+    normals = surface_normals(vertices) if level == 0 else vertex_normals(vertices, triangles)
     shade = DARKEST + (1 - DARKEST) * occlusion(vertices, normals)
     joint_weights = weights.at(vertices)
     segments = _LEVELS[level].face_segments
