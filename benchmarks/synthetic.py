@@ -97,7 +97,7 @@ def _box() -> SkinnedMesh:
     return SkinnedMesh(
         "box",
         (box.vertices + np.array([0, 0.875, 0])).astype(np.float32),
-        np.asarray(box.vertex_normals, np.float32),
+        (box.vertices / np.linalg.norm(box.vertices, axis=1, keepdims=True)).astype(np.float32),
         np.zeros((count, 2), np.float32),
         np.ones((count, 4), np.float32),
         joints,

@@ -22,7 +22,13 @@ class Overlay:
     """
 
     def __init__(self, window: Any, hint: str) -> None:
-        import pyglet
+        try:
+            import pyglet.text.layout
+        except ImportError as error:
+            raise tifo.GraphicsError(
+                f"windows need a system library for text ({error}); on Debian or Ubuntu install "
+                "libfontconfig1, or draw off screen with --headless"
+            ) from None
 
         self._window = window
         self.help_shown = False

@@ -19,7 +19,8 @@ Knots = Sequence[tuple[float, float, float, float, float]]
 
 def smooth_min(a: Field, b: Field, radius: float) -> Field:
     """Union of two solids whose seam is rounded over `radius` metres."""
-    overlap = np.maximum(radius - np.abs(a - b), 0.0) / np.float32(radius)
+    overlap: Field = np.maximum(radius - np.abs(a - b), 0.0)
+    overlap = overlap / np.float32(radius)
     result: Field = np.minimum(a, b) - overlap * overlap * np.float32(radius * 0.25)
     return result
 

@@ -77,7 +77,9 @@ def _level_meshes(
     vertices, triangles = mirrored(vertices, triangles)
     material = np.concatenate([material, material])
     # A coarse surface cuts corners, where the normals of the smooth body would point anywhere.
-    normals = surface_normals(vertices) if level == 0 else vertex_normals(vertices, triangles)
+    normals = surface_normals(vertices)
+    if level > 0:
+        normals = vertex_normals(vertices, triangles).astype(np.float32)
     shade = DARKEST + (1 - DARKEST) * occlusion(vertices, normals)
     joint_weights = weights.at(vertices)
     segments = _LEVELS[level].face_segments
