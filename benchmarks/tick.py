@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import count
 from time import perf_counter
 from typing import Any
 
@@ -10,16 +11,27 @@ import numpy as np
 from ..engine.behaviour.events import Goal
 from ..engine.crowd.cameras import camera_presets
 from ..engine.crowd.spec import CrowdSpec
+from ..engine.streams.pool import Stream
 from ..scripting.camera import FreeCamera
+from ..systems.crowd import Crowd
 from ..systems.simulation import Simulation
 from .measure import environment, spread
 from .synthetic import synthetic_character
 
 SIZE = (1280, 720)
+FILL = 20
+"""Ticks of every 40 from which on slots are filled."""
 
 
 def tick(
-    *, agents: int, streams: int, joints: int, history: int, runs: int, seed: int = 1
+    *,
+    agents: int,
+    streams: int,
+    joints: int,
+    history: int,
+    runs: int,
+    slots: int = 800,
+    seed: int = 1,
 ) -> dict[str, Any]:
     """Time pose ticks of a whole stadium seen from the main stand, and ticks in which goals fall.
 
@@ -29,11 +41,19 @@ def tick(
         Size of the crowd; every seat is taken.
     runs
         Pose ticks that are timed.
+    slots
+        Transition slots, all in use: that many agents are in blends from a snapshot.
     seed
         Of crowd and character.
     """
     spec = CrowdSpec(
-        seats=agents, occupancy=1.0, sides=2, streams=streams, history=history, seed=seed
+        seats=agents,
+        occupancy=1.0,
+        sides=2,
+        streams=streams,
+        history=history,
+        slots=slots,
+        seed=seed,
     )
     character = synthetic_character(joints, np.random.default_rng(seed))
     simulation = Simulation(spec, character)
@@ -43,17 +63,26 @@ def tick(
     schedule = simulation.schedule
     whole: list[float] = []
     goals: list[float] = []
+    in_use: list[int] = []
     with simulation.active():
-        for number in range(2 * runs + 120):
+        for number in count():
+            if len(whole) + len(goals) == runs:
+                break
+            # Behaviour ends blends that hold slots: now and then they are taken again, untimed.
+            fills = FILL <= number % 40 < FILL + 6
+            if fills and number % 2 == 0:
+                _fill_slots(simulation.crowd)
             # Goals of both sides, rarely, and the crowd calm again before the next.
             goal = number >= 120 and number % 600 == 120
             if goal:
                 simulation.crowd.send(Goal(side=number // 600 % 2))
-            schedule.keep_times = number >= 120 and (simulation.clock.tick + 1) % 2 == 0
+            is_pose_tick = (simulation.clock.tick + 1) % 2 == 0
+            schedule.keep_times = number >= 120 and is_pose_tick and not fills
             begin = perf_counter()
             schedule.tick()
             schedule.frame()
             if schedule.keep_times:
+                in_use.append(_slots_in_use(simulation.crowd))
                 (goals if goal or number % 600 == 121 else whole).append(perf_counter() - begin)
     result: dict[str, Any] = {
         "benchmark": "tick",
@@ -61,6 +90,7 @@ def tick(
         "streams": streams,
         "joints": joints,
         "history_poses": history,
+        "slots_in_use": int(np.median(in_use)),
         **spread(whole),
         "systems": {_name(name): spread(times) for name, times in schedule.times.items()},
         "environment": environment(),
@@ -69,6 +99,24 @@ def tick(
         result["goal_tick_ms"] = spread(goals)["median_ms"]
     simulation.close()
     return result
+
+
+def _fill_slots(crowd: Crowd) -> None:
+    """Ask as many agents as there are free slots for something else, for an hour.
+
+    The first time they begin a blend, and the second time they leave its middle.
+    """
+    ladder, pool = crowd.ladder, crowd.pool
+    assert ladder is not None
+    assert pool is not None
+    used = ladder.slots.holds(ladder.transition.row[0]) & (ladder.transition.duration[0] > 0)
+    agents = np.flatnonzero(~used)[: ladder.slots.free]
+    crowd.transition_to_streamed(agents, Stream(0, int(pool.generation[0])), duration=3600.0)
+
+
+def _slots_in_use(crowd: Crowd) -> int:
+    assert crowd.ladder is not None
+    return len(crowd.ladder.slots.used) - crowd.ladder.slots.free
 
 
 def _name(system: str) -> str:

@@ -52,16 +52,28 @@ class AgentAnimID:
 
 @dataclass(slots=True, eq=False)
 class Transition:
-    """Per part and agent: the source of a running blend into what `AgentAnimID` says.
+    """Per part and agent: the source of a running blend into `AgentAnimID`, and what is next.
 
     Attributes
     ----------
     row, start, target, t0, rate
-        As in `AgentAnimID`, of the motion that is left.
+        As in `AgentAnimID`, of the motion that is left; the row of a slot, if the blend comes from
+        a snapshot.
     begin
-        (P, N) int32 pose tick at which the blend begins.
+        (P, N) float64 pose tick at which the blend begins, a multiple of 1/256, so that float32
+        holds it exactly beside a nearby tick.
     duration
         (P, N) float32 pose ticks that it takes; 0 where no blend runs.
+    next_row
+        (P, N) int32 unified pose index of the last request that has not begun; -1 if there is none.
+    next_offset
+        (P, N) float32 its offset in poses; NaN is drawn when it begins.
+    next_duration
+        (P, N) float32 pose ticks that it may take; 0 is a jump.
+    next_since
+        (P, N) int32 pose tick since which the agent waits; -1 before it had to.
+    asked
+        (P, N) bool: the request is so new that no pose tick has seen it.
     """
 
     row: NDArray[np.int32]
@@ -69,12 +81,17 @@ class Transition:
     target: NDArray[np.float32]
     t0: NDArray[np.int32]
     rate: NDArray[np.float32]
-    begin: NDArray[np.int32]
+    begin: NDArray[np.float64]
     duration: NDArray[np.float32]
+    next_row: NDArray[np.int32]
+    next_offset: NDArray[np.float32]
+    next_duration: NDArray[np.float32]
+    next_since: NDArray[np.int32]
+    asked: NDArray[np.bool_]
 
     @classmethod
     def allocate(cls, parts: int, agents: int) -> Transition:
-        """No blend runs."""
+        """No blend runs and none is asked for."""
         shape = (parts, agents)
         return cls(
             row=np.zeros(shape, np.int32),
@@ -82,8 +99,13 @@ class Transition:
             target=np.zeros(shape, np.float32),
             t0=np.zeros(shape, np.int32),
             rate=np.zeros(shape, np.float32),
-            begin=np.zeros(shape, np.int32),
+            begin=np.zeros(shape, np.float64),
             duration=np.zeros(shape, np.float32),
+            next_row=np.full(shape, -1, np.int32),
+            next_offset=np.zeros(shape, np.float32),
+            next_duration=np.zeros(shape, np.float32),
+            next_since=np.full(shape, -1, np.int32),
+            asked=np.zeros(shape, np.bool_),
         )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import esper
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..components import (
     AgentAnimID,
@@ -26,6 +26,7 @@ from ..engine.animation.clip import Clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
 from ..engine.behaviour.events import Event, EventQueue
+from ..engine.crowd.agents import agent_ids, agent_values
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
 from ..engine.crowd.motions import MotionLibrary, sort_motions, start_streams
@@ -33,12 +34,20 @@ from ..engine.crowd.occupancy import assign_sides, occupancy_mask
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.streams.baked import BakedPoses
+from ..engine.streams.blend_counts import LadderCounts
 from ..engine.streams.blending import agent_palettes
+from ..engine.streams.ladder import BlendLadder, Focus
 from ..engine.streams.offsets import OffsetSource, initial_offsets
-from ..engine.streams.pool import POSE_RATE, StreamPool
+from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
+from ..engine.streams.slots import SlotPool
+from ..engine.streams.uniques import Unique, UniquePool
 
 SPECTATOR_HEIGHT = 1.75
 """Metres that a character is scaled to, before agents differ."""
+BLEND_SECONDS = 0.4
+"""Length of a blend that nobody chose."""
+FOCUS_RADIUS = 60.0
+"""Metres around a focus in which agents never jump."""
 
 
 @dataclass(slots=True, eq=False)
@@ -53,8 +62,8 @@ class Crowd:
         What it was made from.
     seat, placement, team, appearance, motion, detail, library, events
         The components that every crowd has.
-    pool, anim, transition
-        Streams and blends; None in a baked crowd.
+    pool, anim, transition, ladder
+        Streams, blends and requests for them; None in a baked crowd.
     baked
         Baked poses and who shows which; None in a streamed crowd.
     """
@@ -74,6 +83,7 @@ class Crowd:
     pool: StreamPool | None = None
     anim: AgentAnimID | None = None
     transition: Transition | None = None
+    ladder: BlendLadder | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
 
     def __len__(self) -> int:
@@ -83,6 +93,108 @@ class Crowd:
     def send(self, event: Event) -> None:
         """Let the crowd see an event at the next tick."""
         self.events.send(event)
+
+    @property
+    def uniques(self) -> UniquePool:
+        """Motions that are not shared; ValueError in a baked crowd."""
+        return self._ladder().uniques
+
+    @property
+    def blend_counts(self) -> LadderCounts:
+        """How many changes of motion took which rung of the blend ladder."""
+        return self._ladder().counts
+
+    def transition_to_streamed(
+        self,
+        agents: int | ArrayLike,
+        stream: Stream,
+        part: int = 0,
+        *,
+        duration: float | ArrayLike = BLEND_SECONDS,
+        offset: float | ArrayLike | None = None,
+    ) -> None:
+        """Ask agents to blend to a stream; it begins at the next pose tick.
+
+        Never fails for want of room, and the last request of an agent is the one it ends on; see
+        `tifo.engine.streams.ladder`.
+
+        Parameters
+        ----------
+        agents
+            An id, ids, or a (N,) boolean mask.
+        stream
+            One of `pool`.
+        part
+            Which part of the agents.
+        duration
+            Seconds of the blend, for all or for each; 0 jumps.
+        offset
+            Poses behind the stream's head, for all or for each; None draws one for each agent.
+
+        Raises
+        ------
+        ValueError
+            For a baked crowd, agents that don't exist, a stale stream, or values out of range.
+        """
+        ladder = self._ladder()
+        row = ladder.pool.row(stream)
+        longest = float(ladder.pool.history[row] - 2)
+        self._ask(agents, row, part, duration, np.nan if offset is None else offset, longest)
+
+    def transition_to_unique(
+        self,
+        agents: int | ArrayLike,
+        unique: Unique,
+        part: int = 0,
+        *,
+        duration: float | ArrayLike = BLEND_SECONDS,
+    ) -> None:
+        """Ask agents to blend to a unique; as `transition_to_streamed`, without an offset."""
+        self._ask(agents, self._ladder().uniques.row(unique), part, duration, 0.0, 0.0)
+
+    def set_focus(
+        self, place: tuple[float, float, float] | None, *, radius: float = FOCUS_RADIUS
+    ) -> None:
+        """Say where people look, so that only agents farther away may ever jump.
+
+        Parameters
+        ----------
+        place
+            Metres in the stadium's frame; None, as at first, lets nobody jump.
+        radius
+            Metres around it.
+        """
+        if place is None:
+            self._ladder().focus = None
+            return
+        if not np.isfinite(place).all() or np.shape(place) != (3,):
+            raise ValueError(f"place is {place}, expected three finite numbers")
+        if not radius >= 0:
+            raise ValueError(f"radius is {radius}, expected metres >= 0")
+        self._ladder().focus = Focus(place, radius)
+
+    def _ask(
+        self,
+        agents: int | ArrayLike,
+        row: int,
+        part: int,
+        duration: float | ArrayLike,
+        offset: float | ArrayLike,
+        longest: float,
+    ) -> None:
+        ladder = self._ladder()
+        parts = len(ladder.anim.row)
+        if not 0 <= part < parts:
+            raise ValueError(f"part is {part}, expected 0 to {parts - 1}")
+        ids = agent_ids(agents, len(self))
+        seconds = agent_values("duration", duration, len(ids), 0.0, np.inf)
+        poses = agent_values("offset", offset, len(ids), 0.0, longest, drawn=True)
+        ladder.ask(part, ids, row, poses, seconds * np.float32(POSE_RATE))
+
+    def _ladder(self) -> BlendLadder:
+        if self.ladder is None:
+            raise ValueError("this crowd is baked and can't blend; use poses='streams'")
+        return self.ladder
 
     def palettes(
         self, agents: NDArray[np.int64], tick: int, alpha: float = 1.0
@@ -207,6 +319,8 @@ def _add_streams(
         capacity=spec.streams,
         history=spec.history,
         markers=figure.joints,
+        uniques=spec.uniques,
+        slots=spec.slots,
     )
     streams = start_streams(pool, crowd.library, spec.streams, rng)
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
@@ -219,7 +333,9 @@ def _add_streams(
     anim.row[0] = streams.draw_rows(crowd.motion.shown, rng)
     anim.start[0] = anim.target[0] = initial_offsets(offsets, count, spec.history, rng)
     crowd.pool, crowd.anim, crowd.transition = pool, anim, Transition.allocate(1, count)
-    for component in (pool, streams, anim, crowd.transition):
+    uniques, slots = UniquePool(pool), SlotPool(pool.store)
+    crowd.ladder = BlendLadder(pool, uniques, slots, anim, crowd.transition, crowd.placement)
+    for component in (pool, streams, uniques, slots, anim, crowd.transition, crowd.ladder):
         esper.add_component(crowd.entity, component)
 
 

@@ -6,6 +6,7 @@ import esper
 
 from ..engine.clock import Clock
 from ..engine.streams.pool import StreamPool
+from ..engine.streams.uniques import UniquePool
 from .query import crowds
 
 
@@ -17,3 +18,5 @@ class HistorySystem(esper.Processor):
         if clock.is_pose_tick:
             for _, (pool,) in crowds(StreamPool):
                 pool.commit(clock.pose_tick)
+            for _, (uniques,) in crowds(UniquePool):
+                uniques.commit(clock.pose_tick)

@@ -1,16 +1,14 @@
-"""Agents whose wanted motion is not the one they show begin to blend towards it."""
+"""Agents whose wanted motion is not the one they show are asked to blend towards it."""
 
 from __future__ import annotations
 
 import esper
 import numpy as np
-from numpy.typing import NDArray
 
-from ..components import AgentAnimID, BakedAnim, MotionState, Transition
+from ..components import BakedAnim, MotionState
 from ..engine.clock import Clock
 from ..engine.crowd.motions import MotionLibrary, MotionStreams
-from ..engine.streams.blending import begin_blend, end_finished
-from ..engine.streams.pool import StreamPool
+from ..engine.streams.ladder import BlendLadder
 from .query import crowds
 
 BODY = 0
@@ -18,9 +16,9 @@ BODY = 0
 
 
 class TransitionSystem(esper.Processor):
-    """Turns wanted motions into streams and offsets.
+    """Turns wanted motions into streams and offsets, and meets what the application asked for.
 
-    An agent in the middle of a blend finishes it first and then goes on to what it wants by then.
+    What was asked for since the last pose tick goes before what behaviour wants in this one.
     Baked crowds can't blend: they change clip at once.
 
     Parameters
@@ -36,37 +34,23 @@ class TransitionSystem(esper.Processor):
         """One base tick; works at pose ticks."""
         if not clock.is_pose_tick:
             return
-        for entity, (state, anim, pool) in crowds(MotionState, AgentAnimID, StreamPool):
-            transition = esper.component_for_entity(entity, Transition)
-            streams = esper.component_for_entity(entity, MotionStreams)
-            self._stream(state, anim, transition, pool, streams, clock.pose_tick)
+        for entity, (ladder,) in crowds(BlendLadder):
+            state = esper.try_component(entity, MotionState)
+            streams = esper.try_component(entity, MotionStreams)
+            if state is not None and streams is not None:
+                self._want(state, ladder, streams)
+            ladder.step(clock.pose_tick, self._rng)
         for _, (state, baked, library) in crowds(MotionState, BakedAnim, MotionLibrary):
             self._bake(state, baked, library, clock.pose_tick)
 
-    def _stream(
-        self,
-        state: MotionState,
-        anim: AgentAnimID,
-        transition: Transition,
-        pool: StreamPool,
-        streams: MotionStreams,
-        tick: int,
-    ) -> None:
-        end_finished(anim, transition, tick)
-        ready = (state.wanted != state.shown) & (transition.duration[BODY] == 0)
-        agents = np.flatnonzero(ready)
+    def _want(self, state: MotionState, ladder: BlendLadder, streams: MotionStreams) -> None:
+        agents = np.flatnonzero(state.wanted != state.shown)
         if not len(agents):
             return
-        motion = state.wanted[agents]
-        row = streams.draw_rows(motion, self._rng)
-        offset = self._offsets(pool, row)
-        begin_blend(anim, transition, BODY, agents, row, offset, tick, state.blend[agents])
-        state.shown[agents] = motion
-
-    def _offsets(self, pool: StreamPool, row: NDArray[np.int32]) -> NDArray[np.float32]:
-        """Uniform over what each stream's history holds."""
-        longest = np.maximum(pool.valid[row] - 2, 0)
-        return (self._rng.random(len(row)) * longest).astype(np.float32)
+        state.shown[agents] = state.wanted[agents]
+        agents = agents[~ladder.transition.asked[BODY, agents]]
+        row = streams.draw_rows(state.wanted[agents], self._rng)
+        ladder.ask(BODY, agents, row, np.nan, state.blend[agents])
 
     def _bake(
         self, state: MotionState, baked: BakedAnim, library: MotionLibrary, tick: int

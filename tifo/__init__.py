@@ -19,7 +19,7 @@ from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
-from .engine.streams import Stream, StreamPool
+from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.crowd import Crowd, spawn_crowd
 from .systems.schedule import Schedule, add_systems, tick_systems
@@ -59,6 +59,8 @@ __all__ = [
     "StreamPool",
     "Team",
     "TifoError",
+    "Unique",
+    "UniquePool",
     "View",
     "add_motions",
     "add_systems",

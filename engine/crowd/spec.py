@@ -34,6 +34,8 @@ _WHOLE = {
     "sides": (1, 2),
     "streams": (1, 256),
     "history": (2, 254),
+    "slots": (0, 8192),
+    "uniques": (0, 2048),
     "seed": (0, 2**63 - 1),
 }
 _REAL = {
@@ -71,6 +73,9 @@ class CrowdSpec:
         `neutrals` of all seats supports nobody; the rest is home.
     streams, history
         Animation streams and poses kept of each.
+    slots, uniques
+        Agents that can blend from the middle of another blend at once, and motions that are not
+        shared, such as live ones.
     poses
         Whether motions are streamed, or every frame of every clip is baked beforehand.
     offsets
@@ -98,6 +103,8 @@ class CrowdSpec:
     away_share: float = field(default=0.05, metadata=_help("share of the away block, with 2 sides"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
+    slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
+    uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))
     poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")

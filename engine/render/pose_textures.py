@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -51,7 +52,7 @@ class StreamTextures:
         self._statics = Texture2D((3 * joints, len(store.static)), rgba)
         self._ring_markers = TextureArray((markers, rows), store.capacity, rgba)
         self._static_markers = Texture2D((markers, len(store.static)), rgba)
-        self._streams = Texture2D((rows, 1), rgba)
+        self._streams = Texture2D((rows + store.uniques, 1), rgba)
         self._everything = True
 
     def update(self, tick: int) -> int:
@@ -69,22 +70,30 @@ class StreamTextures:
             if store.ring_markers.shape[2]:
                 self._ring_markers.write(store.ring_markers[number], layer=number)
                 copied += store.ring_markers[number].nbytes
-        for row in statics:
-            self._statics.write(store.static[row].reshape(1, -1, 4), y=row)
+        # Rows that lie together go together: slots are given out lowest first.
+        for first, stop in _runs(statics):
+            poses = store.static[first:stop].reshape(stop - first, -1, 4)
+            self._statics.write(poses, y=first)
+            copied += poses.nbytes
             if store.static_markers.shape[1]:
-                self._static_markers.write(store.static_markers[row][None], y=row)
-            copied += store.static[row].nbytes
+                places = store.static_markers[first:stop]
+                self._static_markers.write(places, y=first)
+                copied += places.nbytes
         # The table counts from the current tick, so it changes every tick for stopped streams.
         table = self._table(tick)
         self._streams.write(table)
         return copied + table.nbytes
 
     def _table(self, tick: int) -> NDArray[np.float32]:
-        pool = self._pool
-        table = np.zeros((1, pool.store.stream_rows, 4), np.float32)
-        table[0, :, 0] = pool.head - tick
-        table[0, :, 1] = pool.head % pool.store.capacity
-        table[0, :, 2] = pool.valid
+        pool, store = self._pool, self._pool.store
+        table = np.zeros((1, store.stream_rows + store.uniques, 4), np.float32)
+        streams, uniques = np.split(table[0], [store.stream_rows])
+        streams[:, 0] = pool.head - tick
+        streams[:, 1] = pool.head % store.capacity
+        streams[:, 2] = pool.valid
+        uniques[:, 0] = store.unique_head - tick
+        uniques[:, 1] = store.unique_newest
+        uniques[:, 2] = store.unique_valid
         return table
 
     def bind(self, program: Program, *, markers: bool) -> None:
@@ -96,6 +105,7 @@ class StreamTextures:
         program["statics"] = STATIC_UNIT
         program["streams"] = STREAM_UNIT
         program["stream_rows"] = self._pool.store.stream_rows
+        program["uniques"] = self._pool.store.uniques
         program["capacity"] = self._pool.store.capacity
 
     def delete(self) -> None:
@@ -127,6 +137,14 @@ class BakedTextures:
         """Delete the textures."""
         self._palettes.delete()
         self._markers.delete()
+
+
+def _runs(rows: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """First and stop of each run of neighbours in ascending rows: 3 4 5 9 gives (3, 6), (9, 10)."""
+    numbers = np.asarray(rows, np.int64)
+    for run in np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1):
+        if len(run):
+            yield int(run[0]), int(run[-1]) + 1
 
 
 def _layers(frames: NDArray[np.float32]) -> TextureArray:

@@ -9,7 +9,7 @@ An agent plays ``o(u)`` pose ticks behind, with
     age  = (h - u) + o(u), at most valid - 1
 
 and shows the mix of the poses that are ``floor(age)`` and ``floor(age) + 1`` ticks older than the
-head. The limit keeps poses from before a cut out of the mix.
+head. The limit keeps poses from before a cut out of the mix. A unique is a stream of two poses.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from .pool import StreamPool
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShownPoses:
-    """Ring places of the two poses that each agent mixes.
+    """Places of the two poses that each agent mixes.
 
     Parameters
     ----------
     row
         (N,) unified pose index.
     newer, older
-        (N,) int64 ring slices, 0 for static rows.
+        (N,) int64: a slice of the row's ring, or -1 - k for static row k.
     weight
         (N,) float32 share of the older pose.
     """
@@ -65,7 +65,7 @@ def offset_at(
 
 def ages(
     pool: StreamPool,
-    row: NDArray[np.int64],
+    line: NDArray[np.int64],
     start: NDArray[np.float32],
     target: NDArray[np.float32],
     t0: NDArray[np.int32],
@@ -78,9 +78,9 @@ def ages(
     Parameters
     ----------
     pool
-        Whose streams the rows are.
-    row
-        (N,) stream rows.
+        Whose streams they are.
+    line
+        (N,) stream rows; behind the streams come the uniques, as ``stream_rows + k``.
     start, target, t0, rate
         (N,) the offset as a linear function of time (`tifo.components.AgentAnimID`).
     tick, alpha
@@ -90,10 +90,10 @@ def ages(
     -------
     (N,) float64
     """
-    head = pool.head[row].astype(np.float64)
+    head, valid = _heads(pool, line)
     shown = np.minimum(tick - 1 + alpha, head)
     age = head - shown + offset_at(start, target, rate, shown - t0)
-    return np.clip(age, 0.0, np.maximum(pool.valid[row] - 1, 0))
+    return np.clip(age, 0.0, np.maximum(valid - 1, 0))
 
 
 def shown_poses(
@@ -106,35 +106,61 @@ def shown_poses(
     tick: int,
     alpha: float,
 ) -> ShownPoses:
-    """Ring places that the agents mix; parameters as for `ages`, rows may be static as well.
+    """Poses that agents mix; parameters as for `ages`, but rows are unified pose indices.
 
-    A stream without a pose yet shows the bind pose.
+    A stream or unique without a pose yet shows the bind pose.
     """
     store = pool.store
-    static = row >= store.stream_rows
-    stream = np.where(static, 0, row)
-    empty = ~static & (pool.valid[stream] == 0)
-    age = ages(pool, stream, start, target, t0, rate, tick, alpha)
-    whole = np.floor(age)
-    newest = pool.head[stream] - whole.astype(np.int64)
-    last = np.maximum(pool.valid[stream] - 1, 0)
-    older = pool.head[stream] - np.minimum(whole.astype(np.int64) + 1, last)
-    held = static | empty
-    return ShownPoses(
-        row=np.where(empty, store.bind_row, row),
-        newer=np.where(held, 0, newest % store.capacity),
-        older=np.where(held, 0, older % store.capacity),
-        weight=np.where(held, 0.0, age - whole).astype(np.float32),
-    )
+    unique = (row >= store.first_unique) & (row < store.first_slot)
+    number = np.where(unique, (row - store.first_unique) // 2, 0)
+    moving = unique | (row < store.stream_rows)
+    line = np.where(unique, store.stream_rows + number, np.where(moving, row, 0))
+    head, valid = _heads(pool, line)
+    age = ages(pool, line, start, target, t0, rate, tick, alpha)
+    whole = np.floor(age).astype(np.int64)
+    back = np.minimum(whole + 1, np.maximum(valid - 1, 0))
+    shown = moving & (valid > 0)
+    # Static rows: the one that is asked for, the bind pose, or one of a unique's two.
+    still = np.where(moving, 0, row - store.stream_rows)
+
+    def place(age: NDArray[np.int64]) -> NDArray[np.int64]:
+        pair = np.ones(len(row), np.int64)
+        if store.uniques:
+            pair += 2 * number + ((store.unique_newest[number] + age) & 1)
+        there = np.where(unique, -1 - pair, (head - age) % store.capacity)
+        return np.where(shown, there, -1 - still)
+
+    weight = np.where(shown, age - whole, 0.0).astype(np.float32)
+    return ShownPoses(row=row, newer=place(whole), older=place(back), weight=weight)
 
 
 def read_palettes(pool: StreamPool, shown: ShownPoses) -> NDArray[np.float32]:
     """Mixed palettes (N, J, 3, 4) float32 of the poses in `shown`."""
-    store = pool.store
-    static = shown.row >= store.stream_rows
-    stream = np.where(static, 0, shown.row)
-    weight = shown.weight[:, None, None, None]
-    newer, older = store.ring[shown.newer, stream], store.ring[shown.older, stream]
-    mixed: NDArray[np.float32] = newer + (older - newer) * weight
-    mixed[static] = store.static[shown.row[static] - store.stream_rows]
+    mixed = _read(pool, shown.row, shown.newer)
+    both = np.flatnonzero(shown.weight)
+    if len(both):
+        other = _read(pool, shown.row[both], shown.older[both])
+        other -= mixed[both]
+        other *= shown.weight[both, None, None, None]
+        mixed[both] += other
     return mixed
+
+
+def _read(
+    pool: StreamPool, row: NDArray[np.int64], place: NDArray[np.int64]
+) -> NDArray[np.float32]:
+    store = pool.store
+    ring = store.ring.reshape(-1, *store.ring.shape[2:])
+    found = np.take(ring, place * store.stream_rows + row, axis=0, mode="clip")
+    still = np.flatnonzero(place < 0)
+    found[still] = store.static[-1 - place[still]]
+    return found
+
+
+def _heads(
+    pool: StreamPool, line: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Heads and valid counts of stream rows and, behind them, of uniques."""
+    head = np.concatenate([pool.head, pool.store.unique_head])
+    valid = np.concatenate([pool.valid, pool.store.unique_valid])
+    return head[line], valid[line]

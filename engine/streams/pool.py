@@ -10,6 +10,7 @@ A stream that stops keeps its head: its agents hold. Running again, a seek or an
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from ..animation.clip_bank import ClipBank
 from ..animation.kinematics import Kinematics
 from ..animation.skeleton import Skeleton
+from .markers import Markers
 from .store import PoseStore
 
 POSE_RATE = 30.0
@@ -46,9 +48,15 @@ class StreamPool:
         M, the longest history of any stream in poses, 2 to 254.
     markers
         (K,) joints whose positions the store keeps for the farthest level of detail.
+    uniques, slots
+        How many uniques and transition slots the store has room for.
 
     Attributes
     ----------
+    markers
+        The joints whose positions are kept.
+    before_cut
+        Called with a stream's row and whether it is removed, before its poses are lost.
     head
         (R,) int64: pose tick of each stream's newest pose.
     valid
@@ -67,15 +75,16 @@ class StreamPool:
     __slots__ = (
         "_kinematics",
         "_longest",
-        "_marker_joints",
         "_pending",
         "alive",
         "bank",
+        "before_cut",
         "clip",
         "generation",
         "head",
         "history",
         "looping",
+        "markers",
         "running",
         "skeleton",
         "speed",
@@ -92,17 +101,25 @@ class StreamPool:
         capacity: int = 256,
         history: int = 60,
         markers: NDArray[np.int64] | None = None,
+        uniques: int = 0,
+        slots: int = 0,
     ) -> None:
         if not 1 <= capacity <= 16384:
             raise ValueError(f"capacity is {capacity}, expected 1 to 16384 streams")
         self.skeleton = skeleton
         self.bank = bank
-        self._marker_joints = np.zeros(0, np.int64) if markers is None else markers
+        joints = np.zeros(0, np.int64) if markers is None else markers
+        self.markers = Markers(joints, bind_positions(skeleton)[joints])
         self.store = PoseStore(
-            skeleton.joint_count, capacity, history, markers=len(self._marker_joints)
+            skeleton.joint_count,
+            capacity,
+            history,
+            uniques=uniques,
+            slots=slots,
+            markers=len(joints),
         )
-        bind = bind_positions(skeleton)
-        self.store.write_static(0, np.eye(3, 4, dtype=np.float32), bind[self._marker_joints])
+        self.store.write_static(0, np.eye(3, 4, dtype=np.float32), self.markers.bind)
+        self.before_cut: list[Callable[[int, bool], None]] = []
         self._kinematics: Kinematics | None = None
         self._pending = np.zeros(0, np.int64)
         self._longest = history
@@ -162,8 +179,9 @@ class StreamPool:
         return Stream(row, int(self.generation[row]))
 
     def remove(self, stream: Stream) -> None:
-        """Give a stream's row back; agents still on it show the bind pose until they are moved."""
+        """Give a stream's row back; agents still on it are moved to the bind pose."""
         row = self.row(stream)
+        self._tell(row, removed=True)
         self.alive[row] = self.running[row] = False
         self._cut(row)
 
@@ -234,8 +252,8 @@ class StreamPool:
         )
         target = self.store.ring[self.store.slice_of(tick)]
         workspace.evaluate(pose, target, None if whole else rows)
-        if len(self._marker_joints):
-            markers = workspace.joint_positions(self._marker_joints)
+        if len(self.markers.joints):
+            markers = workspace.joint_positions(self.markers.joints)
             self.store.ring_markers[self.store.slice_of(tick), rows, :, :3] = markers
 
     def commit(self, tick: int) -> None:
@@ -261,7 +279,13 @@ class StreamPool:
         wrap = self.looping[rows] & (duration > 0)
         self.time[rows[wrap]] = np.mod(self.time[rows[wrap]], duration[wrap])
 
+    def _tell(self, row: int, *, removed: bool) -> None:
+        for hook in self.before_cut:
+            hook(row, removed)
+
     def _cut(self, row: int) -> None:
+        if self.valid[row] > 0:
+            self._tell(row, removed=False)
         self.valid[row] = 0
         self._drop_pending(row)
         self.store.mark_streams()

@@ -1,9 +1,10 @@
 """The pose store: every palette that an agent can show, under one index.
 
 Rows 0 to ``stream_rows - 1`` are streams; each has a ring of `capacity` slices, and slice
-``tick mod capacity`` holds the pose of that pose tick. Rows from ``stream_rows`` on are static: one
-palette each, no ring. Static row 0 is the bind pose, which agents without a stream show. The
-drawing side mirrors the arrays; `take_dirty` says what changed since it last asked.
+``tick mod capacity`` holds the pose of that pose tick. Rows from ``stream_rows`` on are static, one
+palette each: the bind pose, which agents without a motion show; two rows for each unique, its
+previous and its current pose in turns; and the transition slots. The drawing side mirrors the
+arrays; `take_dirty` says what changed since it last asked.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 MAX_CAPACITY = 256
+MAX_ROWS = 16384
+"""Rows of a texture that every OpenGL 3.3 driver of use has."""
 
 
 def ring_capacity(history: int) -> int:
@@ -41,7 +44,7 @@ class DirtyPoses:
 
 
 class PoseStore:
-    """Palettes of one skeleton's streams and static poses.
+    """Palettes of one skeleton's streams, uniques and static poses.
 
     Parameters
     ----------
@@ -51,8 +54,8 @@ class PoseStore:
         How many streams have a ring.
     history
         The longest history of any stream, in poses.
-    static_rows
-        Static rows, the bind pose included.
+    uniques, slots
+        How many uniques and transition slots there are room for.
     markers
         Joint positions K kept beside each palette for the farthest level of detail.
 
@@ -61,9 +64,15 @@ class PoseStore:
     ring
         (capacity, stream_rows, J, 3, 4) float32: a slice is contiguous, for one upload.
     static
-        (static_rows, J, 3, 4) float32.
+        (1 + 2 uniques + slots, J, 3, 4) float32.
     ring_markers, static_markers
-        (capacity, stream_rows, K, 4) and (static_rows, K, 4) float32, model space, w unused.
+        (capacity, stream_rows, K, 4) and (static rows, K, 4) float32, model space, w unused.
+    unique_head
+        (uniques,) int64: pose tick of each unique's newest pose.
+    unique_valid
+        (uniques,) int32: poses since its last cut, 0 to 2.
+    unique_newest
+        (uniques,) int64: which of its two rows has the newest pose, 0 or 1.
     """
 
     __slots__ = (
@@ -71,9 +80,14 @@ class PoseStore:
         "capacity",
         "ring",
         "ring_markers",
+        "slots",
         "static",
         "static_markers",
         "stream_rows",
+        "unique_head",
+        "unique_newest",
+        "unique_valid",
+        "uniques",
     )
 
     def __init__(
@@ -81,11 +95,24 @@ class PoseStore:
         joints: int,
         stream_rows: int,
         history: int,
-        static_rows: int = 1,
+        *,
+        uniques: int = 0,
+        slots: int = 0,
         markers: int = 0,
     ) -> None:
+        static_rows = 1 + 2 * uniques + slots
+        for name, value in (("uniques", uniques), ("slots", slots)):
+            if value < 0:
+                raise ValueError(f"{name} is {value}, expected 0 or more")
+        if static_rows > MAX_ROWS or stream_rows + uniques > MAX_ROWS:
+            raise ValueError(
+                f"{stream_rows} streams, {uniques} uniques and {slots} slots need too many rows: "
+                f"streams + uniques and 1 + 2 uniques + slots may be at most {MAX_ROWS}"
+            )
         self.capacity = ring_capacity(history)
         self.stream_rows = stream_rows
+        self.uniques = uniques
+        self.slots = slots
         identity = np.eye(3, 4, dtype=np.float32)
         self.ring = np.empty((self.capacity, stream_rows, joints, 3, 4), dtype=np.float32)
         self.ring[...] = identity
@@ -93,12 +120,25 @@ class PoseStore:
         self.static[...] = identity
         self.ring_markers = np.zeros((self.capacity, stream_rows, markers, 4), dtype=np.float32)
         self.static_markers = np.zeros((static_rows, markers, 4), dtype=np.float32)
+        self.unique_head = np.zeros(uniques, np.int64)
+        self.unique_valid = np.zeros(uniques, np.int32)
+        self.unique_newest = np.zeros(uniques, np.int64)
         self._dirty = DirtyPoses(set(range(self.capacity)), set(range(static_rows)))
 
     @property
     def bind_row(self) -> int:
         """Unified index of the bind pose."""
         return self.stream_rows
+
+    @property
+    def first_unique(self) -> int:
+        """Unified index of unique 0; unique k is at ``first_unique + 2 k``."""
+        return self.stream_rows + 1
+
+    @property
+    def first_slot(self) -> int:
+        """Unified index of slot 0."""
+        return self.stream_rows + 1 + 2 * self.uniques
 
     def slice_of(self, tick: int) -> int:
         """Ring slice that holds the pose of pose tick `tick`."""
@@ -109,17 +149,30 @@ class PoseStore:
         self._dirty.slices.add(self.slice_of(tick))
 
     def mark_streams(self) -> None:
-        """Record that heads, valid counts or states of streams changed."""
+        """Record that heads, valid counts or states of streams or uniques changed."""
         self._dirty.streams = True
 
     def write_static(
-        self, row: int, palette: NDArray[np.float32], markers: NDArray[np.float32] | None = None
+        self,
+        row: int | NDArray[np.int64],
+        palette: NDArray[np.float32],
+        markers: NDArray[np.float32] | None = None,
     ) -> None:
-        """Write static row `row` (0 is the bind pose): a (J, 3, 4) palette, (K, 3) markers."""
+        """Write one or more static rows (0 is the bind pose).
+
+        Parameters
+        ----------
+        row
+            A static row, or (N,) of them; unified indices less `stream_rows`.
+        palette
+            (J, 3, 4) or (N, J, 3, 4).
+        markers
+            (K, 3) or (N, K, 3).
+        """
         self.static[row] = palette
         if markers is not None:
             self.static_markers[row, :, :3] = markers
-        self._dirty.static_rows.add(row)
+        self._dirty.static_rows.update(np.atleast_1d(row).tolist())
 
     def take_dirty(self) -> DirtyPoses:
         """What changed since the last call; the record starts anew."""

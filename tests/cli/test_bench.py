@@ -37,6 +37,35 @@ def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
     assert result["goal_tick_ms"] > 0  # type: ignore[operator]
 
 
+def test_tick_with_slots_in_use(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("--agents", "300", "--streams", "16", "--joints", "12", "--runs", "6")
+    assert figures(capsys, "tick", *words, "--slots", "40")["slots_in_use"] == 40
+    assert figures(capsys, "tick", *words, "--slots", "0")["slots_in_use"] == 0
+
+
+def test_memory_counts_what_a_crowd_has(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("memory", "--agents", "300", "--streams", "16", "--joints", "12", "--slots", "40")
+    assert main(["bench", *words, "--history", "20", "--runs", "14", "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    # A pose is 12 matrices of 3 x 4 floats; a ring for 20 poses has 32 slices.
+    assert result["pose_bytes"] == 12 * 48
+    assert result["clip_streamed_bytes"] == 32 * 12 * 48
+    assert result["ring_bytes"] == 32 * 16 * 12 * 48
+    assert result["slot_bytes"] == 40 * 12 * 48
+    assert result["clip_baked_bytes"] == pytest.approx(
+        result["clip_baked_frames"] * 12 * 48, rel=1e-3
+    )
+    assert result["clips_streamed"] == 520 * 2**20 // result["clip_streamed_bytes"]
+    assert result["clips_streamed"] > 3 * result["clips_baked"]
+    # One slice of 16 streams with 7 markers, 80 heads, and sometimes a table of 300 agents.
+    slice_bytes = 16 * (12 * 48 + 7 * 16) + 16 * (16 + 64)
+    quiet = result["copied_bytes_quiet_tick"]
+    assert quiet >= slice_bytes
+    assert result["copied_bytes_goal_tick"] >= slice_bytes + 300 * 48
+    assert main(["bench", *words, "--runs", "2"]) == 0
+    assert "baked ones" in capsys.readouterr().out
+
+
 @pytest.mark.gl
 def test_frame(capsys: pytest.CaptureFixture[str]) -> None:
     result = figures(capsys, "frame", "--agents", "200", "--size", "80x60", "--runs", "2")

@@ -35,7 +35,8 @@ def test_no_blend_runs_at_first() -> None:
     transition = Transition.allocate(3, 4)
     assert transition.duration.shape == (3, 4)
     assert not transition.duration.any()
-    assert transition.begin.dtype == np.int32
+    assert transition.begin.dtype == np.float64
+    assert (transition.next_row == -1).all()
 
 
 def test_a_transition_can_hold_what_an_agent_leaves() -> None:

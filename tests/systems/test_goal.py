@@ -83,26 +83,40 @@ def test_a_goal_between_two_frames_takes_effect_at_the_next_pose_tick(
     assert motion.react_at.min() >= simulation.clock.pose_tick + 4
 
 
-def test_a_blend_is_finished_before_the_next_begins(simulate: MakeSimulation) -> None:
-    simulation = simulate()
+@pytest.mark.parametrize("slots", [0, 8])
+def test_an_agent_may_change_its_mind_in_the_middle_of_a_blend(
+    simulate: MakeSimulation, slots: int
+) -> None:
+    simulation = simulate(slots=slots)
     crowd = simulation.crowd
-    transition = crowd.transition
+    transition, anim, pool = crowd.transition, crowd.anim, crowd.pool
     assert transition is not None
+    assert anim is not None
+    assert pool is not None
+    crowd.motion.calm_at[:] = NEVER - 1  # nobody wanders
     simulation.run(seconds=0.1)
     crowd.motion.wanted[0] = 4
-    crowd.motion.calm_at[0] = NEVER - 1
     simulation.run(seconds=2 / 60)
-    begin = int(transition.begin[0, 0])
     assert (crowd.motion.shown[0], transition.duration[0, 0]) == (4, 12.0)
+    before = simulation.clock.pose_tick
+    assert transition.begin[0, 0] == before - 1
+    simulation.run(seconds=6 / 60)
     crowd.motion.wanted[0] = 6
-    seen = []
-    while crowd.motion.shown[0] == 4:
-        seen.append(simulation.clock.pose_tick)
-        simulation.run(seconds=2 / 60)
-    # The first picture that needs it no more is that of tick begin + 12 + 1.
-    assert simulation.clock.pose_tick == begin + 13
+    simulation.run(seconds=2 / 60)
     assert crowd.motion.shown[0] == 6
-    assert transition.begin[0, 0] == begin + 13
+    clip = crowd.library.clips[6]
+    if slots:
+        assert pool.clip[anim.row[0, 0]] == clip
+        assert transition.begin[0, 0] == simulation.clock.pose_tick - 1
+        assert transition.row[0, 0] >= pool.store.first_slot
+        assert crowd.blend_counts.tick.snapshot == 1
+        return
+    assert pool.clip[anim.row[0, 0]] == crowd.library.clips[4]
+    assert crowd.blend_counts.tick.deferred == 1
+    # A third of 12 ticks are gone; what is left goes twice as fast.
+    while pool.clip[anim.row[0, 0]] != clip:
+        simulation.run(seconds=2 / 60)
+    assert simulation.clock.pose_tick == before + 4 + 4
 
 
 def test_a_baked_agent_changes_clip_at_once(simulate: MakeSimulation) -> None:

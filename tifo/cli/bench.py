@@ -3,6 +3,7 @@
 evaluate: all streams for one pose tick (sampling, kinematics, palettes, store).
 tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
+memory: what poses and clips take, streamed and baked, and what a tick copies.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame")
+BENCHMARKS = ("evaluate", "tick", "frame", "memory")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,6 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--streams", type=int, default=256, metavar="N", help="animation streams")
     parser.add_argument("--joints", type=int, default=82, metavar="N", help="joints (not in frame)")
     parser.add_argument("--history", type=int, default=60, metavar="N", help="poses a stream keeps")
+    parser.add_argument(
+        "--slots", type=int, default=800, metavar="N", help="transition slots (tick, memory)"
+    )
     parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
     parser.add_argument(
@@ -62,7 +66,23 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
 
         def measure() -> dict[str, Any]:
             return tick(
-                agents=options.agents, joints=options.joints, runs=options.runs or 300, **common
+                agents=options.agents,
+                joints=options.joints,
+                slots=options.slots,
+                runs=options.runs or 300,
+                **common,
+            )
+
+    elif options.benchmark == "memory":
+        from ..benchmarks.memory import memory
+
+        def measure() -> dict[str, Any]:
+            return memory(
+                agents=options.agents,
+                joints=options.joints,
+                slots=options.slots,
+                runs=options.runs or 60,
+                **common,
             )
 
     else:
@@ -81,6 +101,9 @@ def _report(console: Any, result: dict[str, Any]) -> None:
     facts = ("agents", "streams", "joints", "history_poses", "width_pixels", "height_pixels")
     sizes = ", ".join(f"{result[k]:,} {k.split('_')[0]}" for k in facts if k in result)
     console.print(f"[bold]{result['benchmark']}[/]: {sizes}")
+    if result["benchmark"] == "memory":
+        _report_memory(console, result)
+        return
     table = Table("", "median ms", "10 %", "90 %", "lowest", "runs")
     for column in table.columns[1:]:
         column.justify = "right"
@@ -102,8 +125,32 @@ def _report(console: Any, result: dict[str, Any]) -> None:
             f"{name}: {figures['triangles']:,} triangles, {figures['uploaded_bytes']:,} bytes "
             f"copied, agents by level {levels}"
         )
+    if "slots_in_use" in result:
+        console.print(f"transition slots in use: {result['slots_in_use']:,} (median)")
     for key in ("slice_bytes", "ring_bytes"):
         if key in result:
             console.print(f"{key.replace('_', ' ')}: {result[key]:,}")
+    _report_environment(console, result)
+
+
+def _report_memory(console: Any, result: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    table = Table("", "bytes")
+    table.columns[1].justify = "right"
+    for key in ("pose", "clip_streamed", "clip_baked", "ring", "unique", "slot", "marker"):
+        table.add_row(key.replace("_", ", "), f"{result[f'{key}_bytes']:,}")
+    table.add_row("copied in a quiet tick", f"{result['copied_bytes_quiet_tick']:,}")
+    table.add_row("copied after a goal, at most", f"{result['copied_bytes_goal_tick']:,}")
+    console.print(table)
+    console.print(
+        f"{result['budget_bytes'] // 2**20} MB hold {result['clips_streamed']:,} streamed clips "
+        f"of {result['ring_poses']} poses, or {result['clips_baked']:,} baked ones of "
+        f"{result['clip_baked_frames']:.0f} frames"
+    )
+    _report_environment(console, result)
+
+
+def _report_environment(console: Any, result: dict[str, Any]) -> None:
     where = ", ".join(f"{key} {value}" for key, value in result["environment"].items())
     console.print(f"[dim]{where}[/]")

@@ -22,6 +22,7 @@ _FROM_SPEC = (
     "sides",
     "streams",
     "history",
+    "slots",
     "poses",
     "offsets",
     "seed",

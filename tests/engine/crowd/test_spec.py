@@ -37,6 +37,8 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "away_share": st.floats(0.0, 0.5),
     "streams": st.integers(1, 256),
     "history": st.integers(2, 254),
+    "slots": st.integers(0, 8192),
+    "uniques": st.integers(0, 2048),
     "poses": st.sampled_from(["streams", "baked"]),
     "offsets": st.sampled_from(["normal", "uniform"]),
     "seed": st.integers(0, 2**63 - 1),

@@ -139,7 +139,7 @@ def test_a_quiet_tick_copies_one_slice_the_stream_table_and_the_lists(
     stage.draw(look, 1 / 30)
     assert stage.counts.uploaded > store.ring.nbytes, "the first picture copies everything"
     slice_bytes = store.ring[0].nbytes + store.ring_markers[0].nbytes
-    table = 16 * store.stream_rows
+    table = 16 * (store.stream_rows + store.uniques)
     quiet = 0
     for _ in range(12):
         version = crowd.anim.version

@@ -32,7 +32,7 @@ def test_other_histories_are_refused(history: int) -> None:
 
 
 def test_arrays_have_the_documented_shapes_and_start_undeformed() -> None:
-    store = PoseStore(5, 3, 60, static_rows=2, markers=4)
+    store = PoseStore(5, 3, 60, slots=1, markers=4)
     assert store.ring.shape == (64, 3, 5, 3, 4)
     assert store.static.shape == (2, 5, 3, 4)
     assert store.ring_markers.shape == (64, 3, 4, 4)
@@ -49,7 +49,7 @@ def test_ticks_go_round_the_ring(tick: int, place: int) -> None:
 
 
 def test_everything_is_dirty_at_first_and_nothing_after_taking() -> None:
-    store = PoseStore(1, 1, 6, static_rows=3)
+    store = PoseStore(1, 1, 6, uniques=1)
     first = store.take_dirty()
     assert first.slices == set(range(8))
     assert first.static_rows == {0, 1, 2}
@@ -59,7 +59,7 @@ def test_everything_is_dirty_at_first_and_nothing_after_taking() -> None:
 
 
 def test_changes_gather_until_they_are_taken() -> None:
-    store = PoseStore(1, 1, 6, static_rows=3)
+    store = PoseStore(1, 1, 6, uniques=1)
     store.take_dirty()
     store.mark_slice(9)
     store.mark_slice(10)
@@ -73,7 +73,7 @@ def test_changes_gather_until_they_are_taken() -> None:
 
 
 def test_a_static_row_takes_a_palette_and_markers() -> None:
-    store = PoseStore(2, 1, 6, static_rows=2, markers=1)
+    store = PoseStore(2, 1, 6, slots=1, markers=1)
     palette = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
     store.write_static(1, palette, np.array([[1, 2, 3]], np.float32))
     np.testing.assert_array_equal(store.static[1], palette)
