@@ -36,6 +36,7 @@ _WHOLE = {
     "history": (2, 254),
     "seed": (0, 2**63 - 1),
 }
+_FLAGS = ("rest_idle", "lod")
 _REAL = {
     "step": (0.3, 10.0),
     "rise": (0.0, 10.0),
@@ -71,6 +72,10 @@ class CrowdSpec:
         `neutrals` of all seats supports nobody; the rest is home.
     streams, history
         Animation streams and poses kept of each.
+    rest_idle
+        Whether streams that nobody shows stop until somebody wants them again. What a stadium costs
+        then follows from the motions that are in use; agents whose stream just woke play in step
+        for a moment before they drift apart.
     poses
         Whether motions are streamed, or every frame of every clip is baked beforehand.
     offsets
@@ -98,6 +103,7 @@ class CrowdSpec:
     away_share: float = field(default=0.05, metadata=_help("share of the away block, with 2 sides"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
+    rest_idle: bool = field(default=False, metadata=_help("stop streams that nobody shows"))
     poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")
@@ -174,9 +180,9 @@ def _clean(name: str, value: object) -> object:
             allowed = " or ".join(f"'{choice}'" for choice in _CHOICES[name])
             raise ValueError(f"{name} must be {allowed}, not {value!r}")
         return value
-    if name == "lod":
+    if name in _FLAGS:
         if not isinstance(value, bool):
-            raise ValueError(f"lod must be true or false, not {value!r}")
+            raise ValueError(f"{name} must be true or false, not {value!r}")
         return value
     if name in _WHOLE:
         low, high = _WHOLE[name]

@@ -64,6 +64,9 @@ class PoseStore:
         (static_rows, J, 3, 4) float32.
     ring_markers, static_markers
         (capacity, stream_rows, K, 4) and (static_rows, K, 4) float32, model space, w unused.
+    ring_phase
+        (capacity, stream_rows) float32: how far through its cycle each pose is, 0 to 1. Drawing
+        needs no phases, so they are not mirrored.
     """
 
     __slots__ = (
@@ -71,6 +74,7 @@ class PoseStore:
         "capacity",
         "ring",
         "ring_markers",
+        "ring_phase",
         "static",
         "static_markers",
         "stream_rows",
@@ -92,6 +96,7 @@ class PoseStore:
         self.static = np.empty((static_rows, joints, 3, 4), dtype=np.float32)
         self.static[...] = identity
         self.ring_markers = np.zeros((self.capacity, stream_rows, markers, 4), dtype=np.float32)
+        self.ring_phase = np.zeros((self.capacity, stream_rows), dtype=np.float32)
         self.static_markers = np.zeros((static_rows, markers, 4), dtype=np.float32)
         self._dirty = DirtyPoses(set(range(self.capacity)), set(range(static_rows)))
 

@@ -37,6 +37,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "away_share": st.floats(0.0, 0.5),
     "streams": st.integers(1, 256),
     "history": st.integers(2, 254),
+    "rest_idle": st.booleans(),
     "seed": st.integers(0, 2**63 - 1),
     "lod": st.booleans(),
     "character": TEXT,
