@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..engine.animation.clip import Clip
+from ..engine.animation.clip import Clip, ClipEvent
 from ..engine.animation.skeleton import Skeleton
 from ..engine.assets.character import Character, Material, SkinnedMesh
 
@@ -84,7 +84,14 @@ def _clip(name: str, joints: int, rng: np.random.Generator) -> Clip:
         rotation.astype(np.float32),
         (rng.normal(0, 0.1, (1, joints, 3)) + wave(3, 0.01)).astype(np.float32),
         (1.0 + wave(3, 0.02)).astype(np.float32),
+        events=_events(name, duration),
     )
+
+
+def _events(name: str, duration: float) -> tuple[ClipEvent, ...]:
+    """Every clip has a tag a second; claps have as many as clapping hands."""
+    every, event = (0.3, "clap_contact") if "clap" in name else (1.0, "beat")
+    return tuple(ClipEvent(float(time), event) for time in np.arange(0.0, duration, every))
 
 
 def _box() -> SkinnedMesh:

@@ -7,6 +7,7 @@ and is never reused. Nothing here knows of systems, engines or drawing.
 from .animation import AgentAnimID, BakedAnim, Transition
 from .appearance import Appearance
 from .detail import Detail, Level
+from .dilation import Dilation, DilationRequest
 from .motion import MotionState
 from .placement import Placement
 from .seat import Seat, Section
@@ -18,6 +19,8 @@ __all__ = [
     "Appearance",
     "BakedAnim",
     "Detail",
+    "Dilation",
+    "DilationRequest",
     "Level",
     "MotionState",
     "Placement",

@@ -23,7 +23,8 @@ class AgentAnimID:
     start, target
         (P, N) float32 offsets in poses.
     t0
-        (P, N) int32 pose tick.
+        (P, N) int32 pose tick from which the offset counts. Whoever puts an agent on a row in pose
+        tick n sets n; a change of the offset alone sets an earlier one.
     rate
         (P, N) float32 poses a tick, 0 where the offset rests, ``|rate| < 1``.
     version

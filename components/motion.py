@@ -27,6 +27,9 @@ class MotionState:
         (N,) int16 what it will do at `react_at`.
     react_at, calm_at
         (N,) int32 pose ticks at which the reaction begins and ends; NEVER if none is due.
+    busy_until
+        (N,) int32 pose tick until which the agent keeps what it shows, whatever it wants: it is
+        getting up or sitting down.
     blend
         (N,) float32 pose ticks that the next change of motion may take.
     """
@@ -37,6 +40,7 @@ class MotionState:
     reaction: NDArray[np.int16]
     react_at: NDArray[np.int32]
     calm_at: NDArray[np.int32]
+    busy_until: NDArray[np.int32]
     blend: NDArray[np.float32]
 
     @classmethod
@@ -50,5 +54,6 @@ class MotionState:
             reaction=innate.copy(),
             react_at=np.full(count, NEVER, np.int32),
             calm_at=np.full(count, NEVER, np.int32),
+            busy_until=np.zeros(count, np.int32),
             blend=np.full(count, 12.0, np.float32),
         )

@@ -51,6 +51,7 @@ class Game:
         self.keys: Any = pyglet.window.key.KeyStateHandler()
         self.stage = tifo.Stage(self.simulation, self.window.get_framebuffer_size())
         self.overlay = Overlay(self.window, HINT)
+        self.overlay.listen(self.simulation.crowd)
         self.paused = False
         self._pointer = (show.size[0] // 2, show.size[1] // 2)
         self._dragged = False

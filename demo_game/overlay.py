@@ -8,6 +8,9 @@ import tifo
 
 MESSAGE_SECONDS = 3.0
 HINT_SECONDS = 8.0
+CLAP = "clap_contact"
+CLAP_SECONDS = 0.7
+"""Over which claps are averaged."""
 
 
 class Overlay:
@@ -35,6 +38,8 @@ class Overlay:
         self._hint_left = HINT_SECONDS
         self._message_left = 0.0
         self._smooth = 1 / 60
+        self._claps = 0.0
+        self._claps_a_second: float | None = None
 
         def label(size: int, **options: Any) -> Any:
             return pyglet.text.Label(
@@ -46,6 +51,15 @@ class Overlay:
         self._hint = label(11, anchor_y="bottom", multiline=True, width=1200)
         self._hint.text = hint
         self._shade = pyglet.shapes.Rectangle(0, 0, 1, 1, color=(8, 12, 18, 130))
+
+    def listen(self, crowd: tifo.Crowd) -> None:
+        """Show how many claps a second the crowd makes, if its clips say when hands meet."""
+        if crowd.clip_feed is not None and CLAP in crowd.clip_feed.names:
+            self._claps_a_second = 0.0
+            crowd.on_clip_event(CLAP, self._hear)
+
+    def _hear(self, agents: Any, weights: Any) -> None:
+        self._claps += float(weights.sum())
 
     def say(self, text: str) -> None:
         """Show a message for a few seconds."""
@@ -62,7 +76,7 @@ class Overlay:
         state = "paused  ·  " if paused else ""
         self._status.text = (
             f"{state}{1.0 / max(self._smooth, 1e-6):.0f} fps  ·  {present:,} spectators  ·  "
-            f"{counts.triangles:,} triangles  ·  F1 keys"
+            f"{counts.triangles:,} triangles  ·  {self._applause(delta)}F1 keys"
         )
         self._box(0, height - 26, self._status.content_width + 24, 26)
         self._status.x, self._status.y = 12, height - 7
@@ -76,6 +90,14 @@ class Overlay:
             self._box(0, 0, width, self._hint.content_height + 20)
             self._hint.x, self._hint.y = 12, 10
             self._hint.draw()
+
+    def _applause(self, delta: float) -> str:
+        if self._claps_a_second is None:
+            return ""
+        share = min(delta / CLAP_SECONDS, 1.0)
+        self._claps_a_second += self._claps / CLAP_SECONDS - share * self._claps_a_second
+        self._claps = 0.0
+        return f"{self._claps_a_second:,.0f} claps/s  ·  "
 
     def _box(self, x: float, y: float, width: float, height: float) -> None:
         self._shade.position = (x, y)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, fields
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import esper
@@ -15,6 +16,8 @@ from ..components import (
     Appearance,
     BakedAnim,
     Detail,
+    Dilation,
+    DilationRequest,
     MotionState,
     Placement,
     Seat,
@@ -33,13 +36,16 @@ from ..engine.crowd.motions import MotionLibrary, sort_motions, start_streams
 from ..engine.crowd.occupancy import assign_sides, occupancy_mask
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
+from ..engine.crowd.ways import Way, add_ways, find_ways, start_ways, without_ways
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.blend_counts import LadderCounts
 from ..engine.streams.blending import agent_palettes
+from ..engine.streams.event_feed import ClipEventFeed, Listener
 from ..engine.streams.ladder import BlendLadder, Focus
 from ..engine.streams.offsets import OffsetSource, initial_offsets
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.slots import SlotPool
+from ..engine.streams.stream_needs import StreamNeeds
 from ..engine.streams.uniques import Unique, UniquePool
 
 SPECTATOR_HEIGHT = 1.75
@@ -64,6 +70,10 @@ class Crowd:
         The components that every crowd has.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
+    dilation
+        Changes of offsets that wait or were made.
+    clip_feed
+        Clip events; None in a baked crowd.
     baked
         Baked poses and who shows which; None in a streamed crowd.
     """
@@ -84,6 +94,8 @@ class Crowd:
     anim: AgentAnimID | None = None
     transition: Transition | None = None
     ladder: BlendLadder | None = None
+    dilation: Dilation = field(default_factory=Dilation)
+    clip_feed: ClipEventFeed | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
 
     def __len__(self) -> int:
@@ -220,6 +232,103 @@ class Crowd:
         rows = poses.frame_rows(clips.clip[agents].astype(np.int64), clips.speed[agents], seconds)
         return poses.palettes[rows]
 
+    def dilate(
+        self, agents: NDArray[np.int64], targets: NDArray[np.float32], seconds: float
+    ) -> None:
+        """Let agents play closer to their stream's head or farther behind, from the next pose tick.
+
+        They get there a little faster or slower than their motion, so nothing jumps. Where
+        `seconds` is too short to be unseen it takes longer, which `dilation.lengthened` counts.
+
+        Parameters
+        ----------
+        agents, targets
+            (K,) ids, and offsets in poses that their streams' histories have room for.
+        seconds
+            How long it may take.
+
+        Raises
+        ------
+        ValueError
+            For a baked crowd, unknown agents, targets that no stream has room for, or a time
+            outside 0 to 86,400 s.
+        """
+        pool = self._streams()
+        ids = np.asarray(agents, np.int64)
+        wanted = np.asarray(targets, np.float32)
+        if wanted.shape != ids.shape or ids.ndim != 1:
+            raise ValueError(f"targets has shape {wanted.shape}, expected {ids.shape}")
+        if len(ids) and (ids.min() < 0 or ids.max() >= len(self)):
+            raise ValueError(
+                f"agents are {ids.min()} to {ids.max()}, expected 0 to {len(self) - 1}"
+            )
+        longest = int(pool.history_goal.max()) - 2
+        if not ((wanted >= 0) & (wanted <= longest)).all():
+            raise ValueError(f"targets must be 0 to {longest} poses")
+        if not 0 <= seconds <= 86_400:
+            raise ValueError(f"seconds is {seconds}, expected 0 to 86400")
+        self.dilation.waiting.append(DilationRequest(0, ids, wanted, float(seconds)))
+
+    def set_history(self, history: int, seconds: float = 3.0) -> None:
+        """Let all streams keep more or fewer poses; agents spread over them as they were spread.
+
+        Parameters
+        ----------
+        history
+            M, 2 to the ring's capacity less 2.
+        seconds
+            How long agents may take to get where they shall be; it takes longer where that would
+            be seen.
+
+        Raises
+        ------
+        ValueError
+            For a baked crowd, a history that the ring has no room for, or a wrong time.
+        """
+        pool = self._streams()
+        assert self.anim is not None
+        row = self.anim.row[0]
+        agents = np.flatnonzero(row < pool.store.stream_rows)
+        before = np.maximum(pool.history_goal[row[agents]] - 2, 1)
+        for stream in np.flatnonzero(pool.alive):
+            pool.set_history(pool.stream(int(stream)), history)
+        share = np.float32(history - 2) / before.astype(np.float32)
+        targets = np.minimum(self.anim.target[0, agents] * share, np.float32(history - 2))
+        self.dilate(agents, targets, seconds)
+
+    def on_clip_event(self, name: str, listener: Listener) -> Callable[[], None]:
+        """Call `listener(agents, weights)` whenever agents play past the event.
+
+        The arrays are as for `clip_events`.
+
+        Returns
+        -------
+        Callable
+            Ends the subscription.
+
+        Raises
+        ------
+        ValueError
+            For a baked crowd, or a name that no clip has.
+        """
+        self._streams()
+        assert self.clip_feed is not None
+        return self.clip_feed.on(name, listener)
+
+    def clip_events(self, name: str) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """Agents (K,) that played past the event in the current pose tick, and weights (K,).
+
+        Errors as for `on_clip_event`.
+        """
+        self._streams()
+        assert self.clip_feed is not None
+        return self.clip_feed.passed(name)
+
+    def _streams(self) -> StreamPool:
+        if self.pool is None:
+            raise ValueError("this crowd's poses are baked; streams have offsets and clip events")
+        return self.pool
+
     def state_hash(self) -> str:
         """Digest of everything that the simulation decided; equal for equal seeds and inputs."""
         digest = hashlib.blake2b(digest_size=16)
@@ -258,6 +367,11 @@ def spawn_crowd(
     rng_seats, rng_sides, rng_looks, rng_motion, rng_place = map(np.random.default_rng, seeds)
     clips = character.clips or (_rest_clip(character),)
     library = sort_motions(clips)
+    plans = None
+    if spec.poses == "streams":
+        plans = find_ways(clips, library, spec.streams, spec.history)
+    if plans is not None:
+        library = add_ways(library, plans, len(clips))
     figure = make_figure(character)
     occupied = occupancy_mask(plan, spec, rng_seats)
     side = assign_sides(plan, spec, rng_sides)
@@ -288,11 +402,13 @@ def spawn_crowd(
         figure,
         character,
     )
+    if plans is not None:
+        clips = (*clips, *(plan.loop for plan in plans))
     bank = ClipBank(character.skeleton, clips)
     if spec.poses == "baked":
         _add_baked(crowd, bank, figure, rng_motion)
     else:
-        _add_streams(crowd, bank, figure, offsets or spec.offsets, rng_motion)
+        _add_streams(crowd, bank, figure, plans, offsets or spec.offsets, rng_motion)
     for name, start, stop in plan.sections:
         esper.create_entity(Section(name, crowd.entity, start, stop))
     return crowd
@@ -310,7 +426,12 @@ def _place(plan: SeatPlan, figure: Figure, rng: np.random.Generator) -> Placemen
 
 
 def _add_streams(
-    crowd: Crowd, bank: ClipBank, figure: Figure, offsets: OffsetSource, rng: np.random.Generator
+    crowd: Crowd,
+    bank: ClipBank,
+    figure: Figure,
+    plans: tuple[Way, Way] | None,
+    offsets: OffsetSource,
+    rng: np.random.Generator,
 ) -> None:
     spec = crowd.spec
     pool = StreamPool(
@@ -322,7 +443,18 @@ def _add_streams(
         uniques=spec.uniques,
         slots=spec.slots,
     )
-    streams = start_streams(pool, crowd.library, spec.streams, rng)
+    parts: list[Any] = [pool]
+    kept = np.zeros(spec.streams, np.bool_)
+    if plans is None:
+        streams = start_streams(pool, crowd.library, spec.streams, rng)
+    else:
+        spare = sum(plan.streams(spec.history) for plan in plans)
+        streams = start_streams(pool, without_ways(crowd.library), spec.streams - spare, rng)
+        ways, streams = start_ways(pool, crowd.library, plans, streams, spec.history)
+        kept[np.concatenate(ways.rows)] = True
+        parts.append(ways)
+    if spec.rest_idle:
+        parts.append(StreamNeeds(spec.streams, always=kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
     # before the first one.
     for tick in range(1 - spec.history, 1):
@@ -335,7 +467,10 @@ def _add_streams(
     crowd.pool, crowd.anim, crowd.transition = pool, anim, Transition.allocate(1, count)
     uniques, slots = UniquePool(pool), SlotPool(pool.store)
     crowd.ladder = BlendLadder(pool, uniques, slots, anim, crowd.transition, crowd.placement)
-    for component in (pool, streams, uniques, slots, anim, crowd.transition, crowd.ladder):
+    crowd.clip_feed = ClipEventFeed(pool.clip_events, crowd.seat.occupied)
+    parts += [streams, uniques, slots, anim, crowd.transition, crowd.ladder]
+    parts += [crowd.dilation, crowd.clip_feed]
+    for component in parts:
         esper.add_component(crowd.entity, component)
 
 

@@ -10,7 +10,9 @@ class Phase(IntEnum):
 
     BEHAVIOUR = 70
     TRANSITIONS = 60
+    DILATION = 55
     CONTROLLERS = 50
     HISTORY = 40
+    CLIP_EVENTS = 35
     DETAIL = 30
     RENDER = 20

@@ -16,8 +16,10 @@ import numpy as np
 
 from ..engine.clock import Clock
 from .behaviour import BehaviourSystem
+from .clip_events import ClipEventSystem
 from .controllers import ControllerSystem
 from .detail import DetailSystem
+from .dilation import DilationSystem
 from .history import HistorySystem
 from .phases import Phase
 from .transitions import TransitionSystem
@@ -85,8 +87,10 @@ def tick_systems(seed: int) -> list[esper.Processor]:
     return [
         BehaviourSystem(np.random.default_rng(behaviour)),
         TransitionSystem(np.random.default_rng(transitions)),
+        DilationSystem(),
         ControllerSystem(),
         HistorySystem(),
+        ClipEventSystem(),
     ]
 
 
@@ -95,7 +99,14 @@ def add_systems(seed: int, *, levels: bool = True) -> None:
 
     ``esper.process(clock)`` then runs one tick and one frame.
     """
-    phases = (Phase.BEHAVIOUR, Phase.TRANSITIONS, Phase.CONTROLLERS, Phase.HISTORY)
+    phases = (
+        Phase.BEHAVIOUR,
+        Phase.TRANSITIONS,
+        Phase.DILATION,
+        Phase.CONTROLLERS,
+        Phase.HISTORY,
+        Phase.CLIP_EVENTS,
+    )
     for system, phase in zip(tick_systems(seed), phases, strict=True):
         esper.add_processor(system, phase)
     esper.add_processor(DetailSystem(levels=levels), Phase.DETAIL)

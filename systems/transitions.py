@@ -8,6 +8,7 @@ import numpy as np
 from ..components import BakedAnim, MotionState
 from ..engine.clock import Clock
 from ..engine.crowd.motions import MotionLibrary, MotionStreams
+from ..engine.crowd.ways import Ways
 from ..engine.streams.ladder import BlendLadder
 from .query import crowds
 
@@ -19,6 +20,7 @@ class TransitionSystem(esper.Processor):
     """Turns wanted motions into streams and offsets, and meets what the application asked for.
 
     What was asked for since the last pose tick goes before what behaviour wants in this one.
+    Where the crowd has ways between sitting and standing, agents at rest take them.
     Baked crowds can't blend: they change clip at once.
 
     Parameters
@@ -38,19 +40,40 @@ class TransitionSystem(esper.Processor):
             state = esper.try_component(entity, MotionState)
             streams = esper.try_component(entity, MotionStreams)
             if state is not None and streams is not None:
-                self._want(state, ladder, streams)
+                ways = esper.try_component(entity, Ways)
+                self._want(state, ladder, streams, ways, clock.pose_tick)
             ladder.step(clock.pose_tick, self._rng)
         for _, (state, baked, library) in crowds(MotionState, BakedAnim, MotionLibrary):
             self._bake(state, baked, library, clock.pose_tick)
 
-    def _want(self, state: MotionState, ladder: BlendLadder, streams: MotionStreams) -> None:
-        agents = np.flatnonzero(state.wanted != state.shown)
+    def _want(
+        self,
+        state: MotionState,
+        ladder: BlendLadder,
+        streams: MotionStreams,
+        ways: Ways | None,
+        tick: int,
+    ) -> None:
+        ready = state.wanted != state.shown
+        if ways is not None:
+            ready &= state.busy_until <= tick
+        agents = np.flatnonzero(ready)
         if not len(agents):
             return
-        state.shown[agents] = state.wanted[agents]
-        agents = agents[~ladder.transition.asked[BODY, agents]]
-        row = streams.draw_rows(state.wanted[agents], self._rng)
-        ladder.ask(BODY, agents, row, np.nan, state.blend[agents])
+        asked = ladder.transition.asked[BODY, agents]
+        state.shown[agents[asked]] = state.wanted[agents[asked]]
+        agents = agents[~asked]
+        motion, blend = state.wanted[agents], state.blend[agents]
+        row = streams.draw_rows(motion, self._rng)
+        offset = np.full(len(agents), np.nan, np.float32)
+        resting = np.flatnonzero(ladder.transition.duration[BODY, agents] == 0)
+        if ways is not None and len(resting):
+            way = (motion[resting], row[resting], offset[resting], blend[resting])
+            ways.enter(ladder.pool, state, agents[resting], *way, tick, self._rng)
+            for column, changed in zip((motion, row, offset, blend), way, strict=True):
+                column[resting] = changed
+        state.shown[agents] = motion
+        ladder.ask(BODY, agents, row, offset, blend)
 
     def _bake(
         self, state: MotionState, baked: BakedAnim, library: MotionLibrary, tick: int

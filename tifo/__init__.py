@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from .components import AgentAnimID, Appearance, MotionState, Placement, Seat, Team, View
+from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh
 from .engine.assets.load import add_motions, load_character
 from .engine.assets.spectator import builtin_spectator
@@ -39,6 +40,7 @@ __all__ = [
     "BallHit",
     "CameraMode",
     "Character",
+    "ClipEvent",
     "Clock",
     "Crowd",
     "CrowdSpec",

@@ -18,6 +18,27 @@ MIN_KEY_RATE = 60.0
 """Keys a second that readers resample to, at least."""
 
 
+@dataclass(frozen=True, slots=True)
+class ClipEvent:
+    """A tag on a clip: whoever plays it past `time` seconds from its start gets the event `name`.
+
+    Raises
+    ------
+    ValueError
+        For a time that is negative or not finite, or an empty name.
+    """
+
+    time: float
+    name: str
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        if not np.isfinite(self.time) or self.time < 0:
+            raise ValueError(f"time of clip event '{self.name}' is {self.time}, expected >= 0")
+        if not self.name:
+            raise ValueError("name of a clip event is empty")
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Clip:
     """Local joint transforms at F uniform times from 0 to `duration` seconds.
@@ -37,12 +58,15 @@ class Clip:
         Largest distance in metres between a joint's model-space position in the file's own
         interpolation and in this clip's, measured half way between keys; 0 where the source is
         uniform already.
+    events
+        Tags anywhere from 0 to `duration`, both included. On a looping clip both ends are the
+        seam, and tags on either are passed once a loop.
 
     Raises
     ------
     ValueError
         For wrong shapes, no keys, several keys in no time, a negative or non-finite duration or
-        values.
+        values, or an event after the end.
     """
 
     name: str
@@ -52,6 +76,7 @@ class Clip:
     scale: FloatArray
     looping: bool = True
     resampling_error: float = 0.0
+    events: tuple[ClipEvent, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the shapes."""
@@ -74,6 +99,12 @@ class Clip:
         for name in ("rotation", "translation", "scale"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ValueError(f"{name} of clip '{self.name}' has values that are not finite")
+        for event in self.events:
+            if event.time > self.duration:
+                raise ValueError(
+                    f"event '{event.name}' of clip '{self.name}' is at {event.time} s, "
+                    f"expected 0 to {self.duration} s"
+                )
 
     @property
     def frame_count(self) -> int:

@@ -92,7 +92,8 @@ class MotionLibrary:
         """`count` motions by their innate probabilities."""
         edges = np.cumsum(self.innate)
         drawn = np.searchsorted(edges, rng.random(count) * edges[-1], side="right")
-        motions: NDArray[np.int16] = np.minimum(drawn, len(self.names) - 1).astype(np.int16)
+        last = np.flatnonzero(self.innate)[-1]
+        motions: NDArray[np.int16] = np.minimum(drawn, last).astype(np.int16)
         return motions
 
 

@@ -38,6 +38,7 @@ _WHOLE = {
     "uniques": (0, 2048),
     "seed": (0, 2**63 - 1),
 }
+_FLAGS = ("rest_idle", "lod")
 _REAL = {
     "step": (0.3, 10.0),
     "rise": (0.0, 10.0),
@@ -76,6 +77,10 @@ class CrowdSpec:
     slots, uniques
         Agents that can blend from the middle of another blend at once, and motions that are not
         shared, such as live ones.
+    rest_idle
+        Whether streams that nobody shows stop until somebody wants them again. What a stadium costs
+        then follows from the motions that are in use; agents whose stream just woke play in step
+        for a moment before they drift apart.
     poses
         Whether motions are streamed, or every frame of every clip is baked beforehand.
     offsets
@@ -105,6 +110,7 @@ class CrowdSpec:
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
     uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))
+    rest_idle: bool = field(default=False, metadata=_help("stop streams that nobody shows"))
     poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")
@@ -181,9 +187,9 @@ def _clean(name: str, value: object) -> object:
             allowed = " or ".join(f"'{choice}'" for choice in _CHOICES[name])
             raise ValueError(f"{name} must be {allowed}, not {value!r}")
         return value
-    if name == "lod":
+    if name in _FLAGS:
         if not isinstance(value, bool):
-            raise ValueError(f"lod must be true or false, not {value!r}")
+            raise ValueError(f"{name} must be true or false, not {value!r}")
         return value
     if name in _WHOLE:
         low, high = _WHOLE[name]

@@ -186,11 +186,12 @@ class BlendLadder:
         drawn = np.flatnonzero(np.isnan(offset))
         if len(drawn):
             stream = row[drawn] < self.pool.store.stream_rows
-            history = self.pool.valid[np.where(stream, row[drawn], 0)]
-            longest = np.where(stream, np.maximum(history - 2, 0), 0)
+            longest = np.where(stream, self.pool.room(np.where(stream, row[drawn], 0)), 0)
             offset[drawn] = rng.random(len(drawn)) * longest
         duration = transition.next_duration[at]
         begin_blend(self.anim, transition, part, agents, row, offset, tick - 1, duration)
+        # Clip events know by it that the agent entered in this tick.
+        self.anim.t0[at] = tick
         transition.next_row[at] = -1
 
     def _jump(

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ..animation.clip_bank import ClipBank
 from ..animation.kinematics import Kinematics
 from ..animation.skeleton import Skeleton
+from .clip_events import ClipRun, StreamEvents
 from .markers import Markers
 from .store import PoseStore
 
@@ -63,6 +64,9 @@ class StreamPool:
         (R,) int32: poses since the last cut, at most the stream's history; 0 before the first.
     history
         (R,) int32: M of each stream.
+    history_goal
+        (R,) int32: the M that `set_history` asked for; `history` goes down to it only as agents
+        leave the poses beyond (`dilation.shrink_histories`).
     generation
         (R,) int32: grows when a row is given to another stream.
     running, alive
@@ -70,6 +74,8 @@ class StreamPool:
     clip, time, speed, looping
         (R,) the clip controller: index in `bank`, seconds since its start, playback speed,
         whether it wraps.
+    clip_events
+        Which clip events each stream passed at each of its last pose ticks.
     """
 
     __slots__ = (
@@ -80,9 +86,11 @@ class StreamPool:
         "bank",
         "before_cut",
         "clip",
+        "clip_events",
         "generation",
         "head",
         "history",
+        "history_goal",
         "looping",
         "markers",
         "running",
@@ -126,6 +134,7 @@ class StreamPool:
         self.head = np.zeros(capacity, np.int64)
         self.valid = np.zeros(capacity, np.int32)
         self.history = np.full(capacity, history, np.int32)
+        self.history_goal = self.history.copy()
         self.generation = np.zeros(capacity, np.int32)
         self.running = np.zeros(capacity, np.bool_)
         self.alive = np.zeros(capacity, np.bool_)
@@ -133,6 +142,7 @@ class StreamPool:
         self.time = np.zeros(capacity, np.float64)
         self.speed = np.ones(capacity, np.float64)
         self.looping = np.ones(capacity, np.bool_)
+        self.clip_events = StreamEvents(bank.clips, capacity, self.store.capacity)
 
     def add(
         self,
@@ -163,9 +173,8 @@ class StreamPool:
         """
         index = self._clip_index(clip)
         _check_finite(time=time, speed=speed)
-        longest = self.store.capacity - 2
-        if history is not None and not 2 <= history <= longest:
-            raise ValueError(f"history is {history}, expected 2 to {longest} poses in this pool")
+        if history is not None:
+            self._check_history(history)
         free = np.flatnonzero(~self.alive)
         if not len(free):
             raise ValueError(f"all {len(self.alive)} stream rows are in use; remove a stream first")
@@ -173,6 +182,7 @@ class StreamPool:
         self.alive[row] = self.running[row] = True
         self.generation[row] += 1
         self.history[row] = self._longest if history is None else history
+        self.history_goal[row] = self.history[row]
         self.clip[row], self.time[row], self.speed[row] = index, time, speed
         self.looping[row] = self.bank.looping[index] if looping is None else looping
         self._cut(row)
@@ -213,6 +223,44 @@ class StreamPool:
         row = self.row(stream)
         self.clip[row], self.looping[row] = index, self.bank.looping[index]
 
+    def set_history(self, stream: Stream, history: int) -> None:
+        """Let a running stream keep more or fewer poses from now on.
+
+        More: the history fills up tick by tick. Fewer: nobody may jump, so agents that play farther
+        behind must first come nearer; `dilation.shrink_histories` does that, and a crowd's systems
+        call it.
+
+        Parameters
+        ----------
+        history
+            M, 2 to the ring's capacity less 2.
+        """
+        row = self.row(stream)
+        self._check_history(history)
+        self.history_goal[row] = history
+        self.history[row] = max(history, int(self.history[row]))
+
+    def room(self, rows: NDArray[np.int32]) -> NDArray[np.float64]:
+        """(K,) longest offsets in poses at which agents may enter stream rows (K,) now."""
+        poses = np.minimum(self.valid[rows], self.history_goal[rows])
+        longest: NDArray[np.float64] = np.maximum(poses - 2, 0).astype(np.float64)
+        return longest
+
+    def phase(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        """(K,) how far through its clip each of the stream rows (K,) is, 0 to 1."""
+        duration = self.bank.duration[self.clip[rows]]
+        whole = np.where(duration > 0, duration, 1.0)
+        done = self.time[rows] / whole
+        looping = self.looping[rows]
+        done[looping] = np.mod(done[looping], 1.0)
+        return np.clip(done, 0.0, 1.0, out=done)
+
+    def stream(self, row: int) -> Stream:
+        """Handle of the stream that lives on a row; ValueError if none does."""
+        if not 0 <= row < len(self.alive) or not self.alive[row]:
+            raise ValueError(f"stream {row} is not alive")
+        return Stream(row, int(self.generation[row]))
+
     def row(self, stream: Stream) -> int:
         """Row of a live stream.
 
@@ -245,8 +293,10 @@ class StreamPool:
         whole = len(rows) == len(self.running)
         # A stream's first pose after a cut is the pose at its time; later ones have advanced.
         advanced = self.valid[rows] > 0
+        before = self.time[rows]
         self.time[rows] += np.where(advanced, self.speed[rows] / POSE_RATE, 0.0)
         self._wrap_time(rows)
+        self._record_events(tick, rows, before, advanced)
         pose = self.bank.sample(
             self.clip[rows], self.time[rows], self.looping[rows], workspace.mixed, workspace.scratch
         )
@@ -265,6 +315,7 @@ class StreamPool:
         if len(rows):
             self.head[rows] = tick
             self.valid[rows] = np.minimum(self.valid[rows] + 1, self.history[rows])
+            self.store.ring_phase[self.store.slice_of(tick), rows] = self.phase(rows)
             self.store.mark_slice(tick)
             self.store.mark_streams()
 
@@ -282,6 +333,32 @@ class StreamPool:
     def _tell(self, row: int, *, removed: bool) -> None:
         for hook in self.before_cut:
             hook(row, removed)
+
+    def _record_events(
+        self,
+        tick: int,
+        rows: NDArray[np.int64],
+        before: NDArray[np.float64],
+        advanced: NDArray[np.bool_],
+    ) -> None:
+        clip = self.clip[rows]
+        moved = np.where(advanced, self.speed[rows] / POSE_RATE, 0.0)
+        run = ClipRun(
+            clip=clip,
+            before=before,
+            after=self.time[rows],
+            moved=moved,
+            backwards=self.speed[rows] < 0,
+            looping=self.looping[rows],
+            duration=self.bank.duration[clip],
+            starts=~advanced,
+        )
+        self.clip_events.record(tick, rows, run)
+
+    def _check_history(self, history: int) -> None:
+        longest = self.store.capacity - 2
+        if not 2 <= history <= longest:
+            raise ValueError(f"history is {history}, expected 2 to {longest} poses in this pool")
 
     def _cut(self, row: int) -> None:
         if self.valid[row] > 0:

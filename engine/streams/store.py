@@ -73,6 +73,9 @@ class PoseStore:
         (uniques,) int32: poses since its last cut, 0 to 2.
     unique_newest
         (uniques,) int64: which of its two rows has the newest pose, 0 or 1.
+    ring_phase
+        (capacity, stream_rows) float32: how far through its cycle each pose is, 0 to 1. Drawing
+        needs no phases, so they are not mirrored.
     """
 
     __slots__ = (
@@ -80,6 +83,7 @@ class PoseStore:
         "capacity",
         "ring",
         "ring_markers",
+        "ring_phase",
         "slots",
         "static",
         "static_markers",
@@ -119,6 +123,7 @@ class PoseStore:
         self.static = np.empty((static_rows, joints, 3, 4), dtype=np.float32)
         self.static[...] = identity
         self.ring_markers = np.zeros((self.capacity, stream_rows, markers, 4), dtype=np.float32)
+        self.ring_phase = np.zeros((self.capacity, stream_rows), dtype=np.float32)
         self.static_markers = np.zeros((static_rows, markers, 4), dtype=np.float32)
         self.unique_head = np.zeros(uniques, np.int64)
         self.unique_valid = np.zeros(uniques, np.int32)

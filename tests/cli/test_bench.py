@@ -32,7 +32,9 @@ def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
     )
     systems = result["systems"]
     assert isinstance(systems, dict)
-    assert set(systems) == {"behaviour", "transition", "controller", "history", "detail"}
+    assert set(systems) == {
+        *("behaviour", "transition", "dilation", "controller", "history", "clipevent", "detail")
+    }
     assert all(set(figure) >= FIGURES for figure in systems.values())
     assert result["goal_tick_ms"] > 0  # type: ignore[operator]
 

@@ -57,6 +57,7 @@ def test_everyone_shows_what_is_innate_and_nothing_is_due() -> None:
     assert (state.calm_at == NEVER).all()
     assert state.react_at.dtype == np.int32
     assert (state.blend == 12.0).all()
+    assert not state.busy_until.any()
 
 
 def test_nobody_is_in_view_at_first() -> None:

@@ -129,7 +129,8 @@ def test_a_users_own_system_runs_between_phases(factories: ModuleType, esper_wor
 
 def test_phases_are_in_the_order_of_a_frame() -> None:
     assert [phase.name for phase in sorted(Phase, reverse=True)] == [
-        "BEHAVIOUR", "TRANSITIONS", "CONTROLLERS", "HISTORY", "DETAIL", "RENDER"
+        "BEHAVIOUR", "TRANSITIONS", "DILATION", "CONTROLLERS", "HISTORY", "CLIP_EVENTS",
+        "DETAIL", "RENDER",
     ]  # fmt: skip
 
 

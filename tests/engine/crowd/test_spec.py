@@ -41,6 +41,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "uniques": st.integers(0, 2048),
     "poses": st.sampled_from(["streams", "baked"]),
     "offsets": st.sampled_from(["normal", "uniform"]),
+    "rest_idle": st.booleans(),
     "seed": st.integers(0, 2**63 - 1),
     "lod": st.booleans(),
     "character": TEXT,

@@ -1,0 +1,175 @@
+"""Clip events reach the agents: each when it plays the pose at which its stream passed it.
+
+An agent's time is ``u = n - o(n)`` at pose tick n. A stream's event of tick e reaches it at the
+first n with u >= e, once, also while o changes; only events at or after its entry. An agent that
+leaves a stream drops what is pending; a stopped stream holds it; a cut drops it.
+
+Nothing is kept per agent. An offset is a linear function of time that `dilate` continues exactly
+where it is, so what an agent passes in a tick follows from the function alone, at n - 1 and at n.
+Offsets are rounded to float32 wherever they are compared with whole ticks, as they are when
+`dilate` stores them, so no event falls into a gap between two functions.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...components.animation import AgentAnimID, Transition
+from .blending import blend_weight
+from .displayed import offset_at
+from .pool import StreamPool
+
+
+class Delivered(NamedTuple):
+    """Events of one pose tick and part, ordered by agent.
+
+    Attributes
+    ----------
+    agents
+        (K,) int64 ids; an agent that passes two tagged poses, or one name twice, is there twice.
+    bits
+        (K,) uint64 names, as in `StreamEvents`.
+    weights
+        (K,) float32: the share that the motion has in the agent's picture at this tick, 1 without
+        a blend.
+    """
+
+    agents: NDArray[np.int64]
+    bits: NDArray[np.uint64]
+    weights: NDArray[np.float32]
+
+
+def nothing_delivered() -> Delivered:
+    """No events."""
+    return Delivered(np.zeros(0, np.int64), np.zeros(0, np.uint64), np.zeros(0, np.float32))
+
+
+def deliver(
+    pool: StreamPool, anim: AgentAnimID, transition: Transition, part: int, tick: int
+) -> Delivered:
+    """Events that the agents' `part` plays past in pose tick `tick`.
+
+    Called once a pose tick, after the pool's commit. In a cross-fade both motions count, each with
+    its weight.
+
+    Parameters
+    ----------
+    pool, anim, transition
+        The crowd's streams and columns.
+    part, tick
+        Part, and the pose tick that was just committed.
+    """
+    fading = np.flatnonzero(transition.duration[part] > 0)
+    begin, duration = transition.begin[part, fading], transition.duration[part, fading]
+    share = blend_weight(begin, duration, float(tick))
+    planes = pool.clip_events.planes
+    table = _by_age(pool, tick, planes[0])
+    everyone = np.arange(anim.row.shape[1])
+    special = np.flatnonzero((anim.rate[part] != 0) | (anim.t0[part] == tick))
+    own = [_passed_at_rest(table, anim.row[part], anim.start[part], everyone, special)]
+    own += _passed(pool, anim, part, special, tick, planes[0])
+    leaving = fading[share < 1.0]
+    moving = np.flatnonzero(transition.rate[part, leaving])
+    row, start = transition.row[part, leaving], transition.start[part, leaving]
+    left = [_passed_at_rest(table, row, start, leaving, moving)]
+    left += _passed(pool, transition, part, leaving[moving], tick, planes[0])
+    # Whoever passed a name more than once passed it once.
+    for plane in planes[1:]:
+        if plane.any():
+            again = np.unique(np.concatenate([agents for agents, _ in own]))
+            own += _passed(pool, anim, part, again, tick, plane)
+            left += _passed(pool, transition, part, leaving, tick, plane)
+    agents, bits = (np.concatenate(column) for column in zip(*own, *left, strict=True))
+    mine = sum(len(some) for some, _ in own)
+    # Ids ascend, so a place in `fading` is found by bisection.
+    weights = np.ones(len(agents), np.float32)
+    if len(fading):
+        place = np.minimum(np.searchsorted(fading, agents), len(fading) - 1)
+        blends = fading[place] == agents
+        weights[blends] = share[place[blends]]
+        weights[mine:] = np.float32(1.0) - weights[mine:]
+    order = np.argsort(agents, kind="stable")
+    return Delivered(agents[order], bits[order], weights[order])
+
+
+def _passed_at_rest(
+    table: NDArray[np.uint64],
+    row: NDArray[np.int32],
+    offset: NDArray[np.float32],
+    agents: NDArray[np.int64],
+    but: NDArray[np.int64],
+) -> tuple[NDArray[np.int64], NDArray[np.uint64]]:
+    """Agents and bits for agents at rest on (K,) rows and offsets, without the places in `but`.
+
+    They pass exactly one pose a tick, ``ceil(o)`` behind the head: one gather.
+    """
+    width = table.shape[1]
+    place = np.ceil(offset).astype(np.int32)
+    np.maximum(place, 0, out=place)
+    np.multiply(place, width, out=place)
+    np.add(place, np.minimum(row, width - 1), out=place)
+    # An offset beyond the ring falls on the table's last column, which is empty.
+    index = place.astype(np.intp)
+    hit = np.take(table.ravel() != 0, index, mode="clip")
+    hit[but] = False
+    hits = np.flatnonzero(hit)
+    return agents[hits], np.take(table.ravel(), index[hits], mode="clip")
+
+
+def _by_age(pool: StreamPool, tick: int, plane: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """(capacity, R + 1): bits of the pose of each age that a resting agent reaches at `tick`.
+
+    While a history fills up, agents farther behind than it reaches wait at its first pose: they all
+    got that pose's events when it came, and don't get them again when they leave it.
+    """
+    capacity, rows = plane.shape
+    age = np.arange(capacity)
+    table = np.zeros((capacity, rows + 1), np.uint64)
+    moves = pool.head == tick
+    reached = (age[:, None] <= pool.valid - 2) & moves
+    np.multiply(plane[(tick - age) % capacity], reached, out=table[:, :rows])
+    starts = np.flatnonzero(moves & (pool.valid == 1))
+    table[:, starts] = plane[tick % capacity, starts]
+    return table
+
+
+def _passed(
+    pool: StreamPool,
+    columns: AgentAnimID | Transition,
+    part: int,
+    agents: NDArray[np.int64],
+    tick: int,
+    plane: NDArray[np.uint64],
+) -> list[tuple[NDArray[np.int64], NDArray[np.uint64]]]:
+    """Agents and bits for some agents with any offsets: none, one or two poses each."""
+    if not len(agents):
+        return []
+    row = columns.row[part, agents].astype(np.int64)
+    live = row < len(pool.head)
+    live[live] = (pool.head[row[live]] == tick) & (pool.valid[row[live]] > 0)
+    agents, row = agents[live], row[live]
+    if not len(agents):
+        return []
+    at = (part, agents)
+    line = (columns.start[at], columns.target[at], columns.rate[at])
+    t0 = columns.t0[at].astype(np.float64)
+    now = offset_at(*line, tick - t0).astype(np.float32)
+    then = offset_at(*line, tick - 1 - t0).astype(np.float32)
+    first = tick - pool.valid[row].astype(np.int64) + 1
+    last = np.maximum(tick - np.ceil(now).astype(np.int64), first)
+    before = np.maximum(tick - 1 - np.ceil(then).astype(np.int64), first)
+    # Everyone on a stream sees its first pose when it comes.
+    before[first == tick] = tick - 1
+    entered = columns.t0[at] == tick
+    at_entry = np.maximum(tick - np.floor(now).astype(np.int64), first) - 1
+    before = np.where(entered, at_entry, before)
+    result = []
+    for step in range(1, int((last - before).max()) + 1):
+        some = np.flatnonzero(before + step <= last)
+        bits = plane[(before[some] + step) % len(plane), row[some]]
+        hits = np.flatnonzero(bits)
+        result.append((agents[some[hits]], bits[hits]))
+    return result
