@@ -22,9 +22,10 @@ from ..engine.crowd.spec import CrowdSpec
 from ..engine.crowd.stadium import build_seats, build_stadium_mesh
 from ..engine.crowd.stadium_mesh import StadiumMesh
 from ..engine.streams.offsets import OffsetSource
-from .crowd import Crowd, spawn_crowd
+from .crowd import Crowd
 from .detail import DetailSystem
 from .schedule import Schedule, tick_systems
+from .spawn import spawn_crowd
 
 
 class Simulation:

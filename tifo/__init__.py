@@ -22,9 +22,10 @@ from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
-from .systems.crowd import Crowd, spawn_crowd
+from .systems.crowd import Crowd
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
+from .systems.spawn import spawn_crowd
 
 if TYPE_CHECKING:
     from .engine.gl.context import open_window

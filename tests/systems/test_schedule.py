@@ -16,10 +16,11 @@ from tifo.engine.clock import Clock
 from tifo.engine.crowd.spec import CrowdSpec
 from tifo.engine.crowd.stadium import build_seats
 from tifo.scripting.camera import FreeCamera
-from tifo.systems.crowd import Crowd, spawn_crowd
+from tifo.systems.crowd import Crowd
 from tifo.systems.phases import Phase
 from tifo.systems.schedule import Schedule, add_systems
 from tifo.systems.simulation import Simulation
+from tifo.systems.spawn import spawn_crowd
 
 MakeSimulation = Callable[..., Simulation]
 
