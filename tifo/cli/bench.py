@@ -1,6 +1,7 @@
 """Measure how fast it runs here: medians and spread, with the environment.
 
-evaluate: all streams for one pose tick (sampling, kinematics, palettes, store).
+evaluate: all streams for one pose tick (sampling, kinematics, palettes, store); with --tree deep,
+  trees of five clips and four blends, and the same streams with clips beside them.
 tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
 """
@@ -26,8 +27,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--joints", type=int, default=82, metavar="N", help="joints (not in frame)")
     parser.add_argument("--history", type=int, default=60, metavar="N", help="poses a stream keeps")
     parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
+    parser.add_argument(
+        "--tree", choices=("plain", "deep"), default="plain", help="what streams play (evaluate)"
+    )
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
-    parser.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object and nothing else"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -53,7 +59,9 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
         from ..benchmarks.evaluate import evaluate
 
         def measure() -> dict[str, Any]:
-            return evaluate(joints=options.joints, runs=options.runs or 300, **common)
+            return evaluate(
+                joints=options.joints, tree=options.tree, runs=options.runs or 300, **common
+            )
 
     elif options.benchmark == "tick":
         from ..benchmarks.tick import tick
@@ -92,6 +100,11 @@ def _report(console: Any, result: dict[str, Any]) -> None:
         for name, figures in result.get(group, {}).items():
             row(f"  {name}", figures)
     console.print(table)
+    if "ratio" in result:
+        console.print(
+            f"{result['ratio']:.2f} times as long as plain clips, "
+            f"{result['plain_median_ms']:.3f} ms; to add a stream: {result['add_stream_ms']:.3f} ms"
+        )
     if "goal_tick_ms" in result:
         console.print(f"the tick of a goal: {result['goal_tick_ms']:.2f} ms (median)")
     for name, figures in result.get("cameras", {}).items():
