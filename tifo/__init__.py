@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from .components import AgentAnimID, Appearance, MotionState, Placement, Seat, Team, View
+from .engine.animation import controllers
 from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh
 from .engine.assets.load import add_motions, load_character
@@ -71,6 +72,7 @@ __all__ = [
     "builtin_spectator",
     "camera_presets",
     "character_of",
+    "controllers",
     "load_character",
     "open_window",
     "pick_seat",

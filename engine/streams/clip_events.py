@@ -150,7 +150,7 @@ class StreamEvents:
         if not self.names:
             return
         slot = tick % self.planes.shape[1]
-        self.planes[:, slot, rows] = 0
+        self.clear(tick, rows)
         tagged = np.flatnonzero(self._tagged[run.clip])
         if not len(tagged):
             return
@@ -161,6 +161,10 @@ class StreamEvents:
         self.planes[0, slot, rows[tagged]] = np.bitwise_or.reduce(passed, axis=1)
         for busy in np.flatnonzero(counts.sum(axis=1) > 1):
             self._repeat(slot, int(rows[tagged[busy]]), bits[busy], counts[busy])
+
+    def clear(self, tick: int, rows: NDArray[np.int64]) -> None:
+        """Stream rows (S,) passed nothing in pose tick `tick`."""
+        self.planes[:, tick % self.planes.shape[1], rows] = 0
 
     def _repeat(
         self, slot: int, row: int, bits: NDArray[np.uint64], counts: NDArray[np.int64]

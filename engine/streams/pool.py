@@ -2,7 +2,8 @@
 
 *Streams 2017*, 4.1: a stream has a controller, the pose of the current tick and a ring of its last
 M poses, so that agents on one stream look different by playing some poses behind its head. Here a
-stream is a row of columns, and all running streams are evaluated together.
+stream is a row of columns, and all running streams are evaluated together: those that just play a
+clip are sampled at once, and those with a tree of controllers go through the evaluation plan.
 
 A stream that stops keeps its head: its agents hold. Running again, a seek or another clip is a
 *cut*: `valid` starts again at one, and no pose from before is shown or mixed any more.
@@ -11,30 +12,27 @@ A stream that stops keeps its head: its agents hold. Running again, a seek or an
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..animation.clip_bank import ClipBank
+from ..animation.controllers import Controller
 from ..animation.kinematics import Kinematics
+from ..animation.plan import EvaluationPlan
 from ..animation.skeleton import Skeleton
+from .access import ControllerAccess, Stream
 from .clip_events import ClipRun, StreamEvents
 from .markers import Markers
 from .store import PoseStore
+
+__all__ = ["POSE_RATE", "Stream", "StreamPool", "bind_positions"]
 
 POSE_RATE = 30.0
 """Pose ticks a second."""
 
 
-class Stream(NamedTuple):
-    """Handle of one stream: stale once its row was given to another."""
-
-    row: int
-    generation: int
-
-
-class StreamPool:
+class StreamPool(ControllerAccess):
     """Streams of one skeleton, with the store of their poses.
 
     Parameters
@@ -72,8 +70,9 @@ class StreamPool:
     running, alive
         (R,) bool.
     clip, time, speed, looping
-        (R,) the clip controller: index in `bank`, seconds since its start, playback speed,
-        whether it wraps.
+        (R,) the clip that a stream plays: index in `bank`, seconds since its start, playback speed,
+        whether it wraps. A stream with a controller has clip -1, the seconds that it ran, and a
+        speed that scales all time in its tree.
     clip_events
         Which clip events each stream passed at each of its last pose ticks.
     """
@@ -82,6 +81,7 @@ class StreamPool:
         "_kinematics",
         "_longest",
         "_pending",
+        "_plan",
         "alive",
         "bank",
         "before_cut",
@@ -130,6 +130,7 @@ class StreamPool:
         self.before_cut: list[Callable[[int, bool], None]] = []
         self._kinematics: Kinematics | None = None
         self._pending = np.zeros(0, np.int64)
+        self._plan = EvaluationPlan(skeleton, bank)
         self._longest = history
         self.head = np.zeros(capacity, np.int64)
         self.valid = np.zeros(capacity, np.int32)
@@ -146,32 +147,35 @@ class StreamPool:
 
     def add(
         self,
-        clip: int | str,
+        motion: int | str | Controller,
         *,
         time: float = 0.0,
         speed: float = 1.0,
         looping: bool | None = None,
         history: int | None = None,
     ) -> Stream:
-        """Start a stream on a free row; its first pose is the clip at `time`, at the next tick.
+        """Start a stream on a free row; its first pose is the motion at `time`, at the next tick.
 
         Parameters
         ----------
-        clip
-            Index or name in the bank.
+        motion
+            Index or name of a clip in the bank, or a tree of controllers.
         time, speed
-            Seconds since the clip's start, and how fast it plays (negative plays backwards).
+            Seconds since the start of the clip, or of all clips of the tree, and how fast it plays
+            (negative plays backwards).
         looping
-            Whether time wraps at the clip's end; as the clip says if None.
+            Whether a clip's time wraps at its end; as the clip says if None.
         history
             M of this stream, at most what the pool's ring has room for; the pool's own if None.
 
         Raises
         ------
         ValueError
-            For an unknown clip, a value that is not finite, or when no row is free.
+            For an unknown clip or joint, a value that is not finite, or when no row is free.
         """
-        index = self._clip_index(clip)
+        if isinstance(motion, Controller) and looping is not None:
+            raise ValueError("looping is given for a controller; its clips say whether they loop")
+        _check_motion(motion, self.bank)
         _check_finite(time=time, speed=speed)
         if history is not None:
             self._check_history(history)
@@ -179,12 +183,14 @@ class StreamPool:
         if not len(free):
             raise ValueError(f"all {len(self.alive)} stream rows are in use; remove a stream first")
         row = int(free[0])
+        self._assign(row, motion, time)
         self.alive[row] = self.running[row] = True
         self.generation[row] += 1
         self.history[row] = self._longest if history is None else history
         self.history_goal[row] = self.history[row]
-        self.clip[row], self.time[row], self.speed[row] = index, time, speed
-        self.looping[row] = self.bank.looping[index] if looping is None else looping
+        self.speed[row] = speed
+        if looping is not None:
+            self.looping[row] = looping
         self._cut(row)
         return Stream(row, int(self.generation[row]))
 
@@ -193,6 +199,7 @@ class StreamPool:
         row = self.row(stream)
         self._tell(row, removed=True)
         self.alive[row] = self.running[row] = False
+        self._plan.discard(row)
         self._cut(row)
 
     def stop(self, stream: Stream) -> None:
@@ -210,18 +217,25 @@ class StreamPool:
             self._cut(row)
 
     def seek(self, stream: Stream, time: float) -> None:
-        """Set the controller's time in seconds: a cut."""
+        """Set the controller's time in seconds: a cut.
+
+        A tree starts anew: state machines in their first state, one-shots idle, and every clip
+        `time` seconds after where it begins. Parameters keep their values.
+        """
         _check_finite(time=time)
         row = self.row(stream)
         self.time[row] = time
+        if row in self._plan:
+            self._plan.seek(row, time)
         self._cut(row)
 
-    def play(self, stream: Stream, clip: int | str, *, time: float = 0.0) -> None:
-        """Put another clip on a stream: a cut."""
-        index = self._clip_index(clip)
-        self.seek(stream, time)
+    def play(self, stream: Stream, motion: int | str | Controller, *, time: float = 0.0) -> None:
+        """Put another clip or tree on a stream: a cut. Parameters begin with the tree's values."""
         row = self.row(stream)
-        self.clip[row], self.looping[row] = index, self.bank.looping[index]
+        _check_finite(time=time)
+        _check_motion(motion, self.bank)
+        self._assign(row, motion, time)
+        self._cut(row)
 
     def set_history(self, stream: Stream, history: int) -> None:
         """Let a running stream keep more or fewer poses from now on.
@@ -246,35 +260,11 @@ class StreamPool:
         longest: NDArray[np.float64] = np.maximum(poses - 2, 0).astype(np.float64)
         return longest
 
-    def phase(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-        """(K,) how far through its clip each of the stream rows (K,) is, 0 to 1."""
-        duration = self.bank.duration[self.clip[rows]]
-        whole = np.where(duration > 0, duration, 1.0)
-        done = self.time[rows] / whole
-        looping = self.looping[rows]
-        done[looping] = np.mod(done[looping], 1.0)
-        return np.clip(done, 0.0, 1.0, out=done)
-
     def stream(self, row: int) -> Stream:
         """Handle of the stream that lives on a row; ValueError if none does."""
         if not 0 <= row < len(self.alive) or not self.alive[row]:
             raise ValueError(f"stream {row} is not alive")
         return Stream(row, int(self.generation[row]))
-
-    def row(self, stream: Stream) -> int:
-        """Row of a live stream.
-
-        Raises
-        ------
-        ValueError
-            If the handle is stale or was never this pool's.
-        """
-        row = stream.row
-        if not 0 <= row < len(self.alive) or not self.alive[row]:
-            raise ValueError(f"stream {row} is not alive")
-        if stream.generation != self.generation[row]:
-            raise ValueError(f"stream {row} was removed and its row given to another stream")
-        return row
 
     def evaluate(self, tick: int) -> None:
         """Evaluate all running streams and write their poses into the slice of pose tick `tick`.
@@ -286,25 +276,44 @@ class StreamPool:
         tick
             Pose tick, one more than at the last call.
         """
-        rows = self._pending = np.flatnonzero(self.running)
+        self._pending = self._pending[:0]
+        rows = np.flatnonzero(self.running)
         if not len(rows):
             return
         workspace = self._workspace(len(rows))
-        whole = len(rows) == len(self.running)
+        # Streams that play a clip first: they are sampled straight into what kinematics reads.
+        tree = self.clip[rows] < 0
+        clips = len(rows) - int(np.count_nonzero(tree))
+        in_order = clips in (0, len(rows))
+        if not in_order:
+            rows = np.concatenate([rows[~tree], rows[tree]])
         # A stream's first pose after a cut is the pose at its time; later ones have advanced.
         advanced = self.valid[rows] > 0
+        seconds = np.where(advanced, self.speed[rows] / POSE_RATE, 0.0)
         before = self.time[rows]
-        self.time[rows] += np.where(advanced, self.speed[rows] / POSE_RATE, 0.0)
-        self._wrap_time(rows)
-        self._record_events(tick, rows, before, advanced)
-        pose = self.bank.sample(
-            self.clip[rows], self.time[rows], self.looping[rows], workspace.mixed, workspace.scratch
-        )
+        self.time[rows] += seconds
+        pose = workspace.mixed
+        if clips:
+            plain = rows[:clips]
+            self._wrap_time(plain)
+            self._record_events(tick, plain, before[:clips], seconds[:clips])
+            self.bank.sample(
+                self.clip[plain],
+                self.time[plain],
+                self.looping[plain],
+                pose[:clips],
+                workspace.scratch[:clips],
+            )
+        if clips < len(rows):
+            self.clip_events.clear(tick, rows[clips:])
+            self._plan.evaluate(rows[clips:], seconds[clips:], pose[clips:])
+        whole = in_order and len(rows) == len(self.running)
         target = self.store.ring[self.store.slice_of(tick)]
         workspace.evaluate(pose, target, None if whole else rows)
         if len(self.markers.joints):
             markers = workspace.joint_positions(self.markers.joints)
             self.store.ring_markers[self.store.slice_of(tick), rows, :, :3] = markers
+        self._pending = rows
 
     def commit(self, tick: int) -> None:
         """Make the poses of the last `evaluate` the heads of their streams.
@@ -339,10 +348,9 @@ class StreamPool:
         tick: int,
         rows: NDArray[np.int64],
         before: NDArray[np.float64],
-        advanced: NDArray[np.bool_],
+        moved: NDArray[np.float64],
     ) -> None:
         clip = self.clip[rows]
-        moved = np.where(advanced, self.speed[rows] / POSE_RATE, 0.0)
         run = ClipRun(
             clip=clip,
             before=before,
@@ -351,7 +359,7 @@ class StreamPool:
             backwards=self.speed[rows] < 0,
             looping=self.looping[rows],
             duration=self.bank.duration[clip],
-            starts=~advanced,
+            starts=self.valid[rows] == 0,
         )
         self.clip_events.record(tick, rows, run)
 
@@ -370,12 +378,16 @@ class StreamPool:
     def _drop_pending(self, row: int) -> None:
         self._pending = self._pending[self._pending != row]
 
-    def _clip_index(self, clip: int | str) -> int:
-        if isinstance(clip, str):
-            return self.bank.index(clip)
-        if not 0 <= clip < len(self.bank.clips):
-            raise ValueError(f"clip is {clip}, expected 0 to {len(self.bank.clips) - 1}")
-        return clip
+    def _assign(self, row: int, motion: int | str | Controller, time: float) -> None:
+        """Give a row what it plays; nothing changes if that can't be evaluated."""
+        if isinstance(motion, Controller):
+            self._plan.add(row, motion, time)
+            self.clip[row], self.looping[row] = -1, False
+        else:
+            self._plan.discard(row)
+            index = self.bank.index(motion) if isinstance(motion, str) else motion
+            self.clip[row], self.looping[row] = index, self.bank.looping[index]
+        self.time[row] = time
 
 
 def bind_positions(skeleton: Skeleton) -> NDArray[np.float32]:
@@ -384,6 +396,14 @@ def bind_positions(skeleton: Skeleton) -> NDArray[np.float32]:
     matrices[:, :3] = skeleton.inverse_bind
     matrices[:, 3, 3] = 1.0
     return np.linalg.inv(matrices)[:, :3, 3].astype(np.float32)
+
+
+def _check_motion(motion: int | str | Controller, bank: ClipBank) -> None:
+    """ValueError for a clip that the bank doesn't have."""
+    if isinstance(motion, str):
+        bank.index(motion)
+    elif not isinstance(motion, Controller) and not 0 <= motion < len(bank.clips):
+        raise ValueError(f"clip is {motion}, expected 0 to {len(bank.clips) - 1}")
 
 
 def _check_finite(**values: float) -> None:

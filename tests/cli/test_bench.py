@@ -26,6 +26,16 @@ def test_evaluate(capsys: pytest.CaptureFixture[str]) -> None:
     assert result["slice_bytes"] == 9 * 20 * 48
 
 
+def test_evaluate_trees_beside_clips(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("evaluate", "--tree", "deep", "--streams", "5", "--joints", "9", "--runs", "4")
+    result = figures(capsys, *words)
+    assert (result["tree"], result["runs"]) == ("deep", 4)
+    for key in ("ratio", "plain_median_ms", "add_stream_ms"):
+        assert result[key] > 0  # type: ignore[operator]
+    assert main(["bench", *words]) == 0
+    assert "times as long as plain clips" in capsys.readouterr().out
+
+
 def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
     result = figures(
         capsys, "tick", "--agents", "300", "--streams", "16", "--joints", "12", "--runs", "6"

@@ -1,6 +1,7 @@
 """Measure how fast it runs here: medians and spread, with the environment.
 
-evaluate: all streams for one pose tick (sampling, kinematics, palettes, store).
+evaluate: all streams for one pose tick (sampling, kinematics, palettes, store); with --tree deep,
+  trees of five clips and four blends, and the same streams with clips beside them.
 tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
 memory: what poses and clips take, streamed and baked, and what a tick copies.
@@ -30,6 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--slots", type=int, default=800, metavar="N", help="transition slots (tick, memory)"
     )
     parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
+    parser.add_argument(
+        "--tree", choices=("plain", "deep"), default="plain", help="what streams play (evaluate)"
+    )
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
@@ -59,7 +63,9 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
         from ..benchmarks.evaluate import evaluate
 
         def measure() -> dict[str, Any]:
-            return evaluate(joints=options.joints, runs=options.runs or 300, **common)
+            return evaluate(
+                joints=options.joints, tree=options.tree, runs=options.runs or 300, **common
+            )
 
     elif options.benchmark == "tick":
         from ..benchmarks.tick import tick
@@ -117,6 +123,11 @@ def _report(console: Any, result: dict[str, Any]) -> None:
         for name, figures in result.get(group, {}).items():
             row(f"  {name}", figures)
     console.print(table)
+    if "ratio" in result:
+        console.print(
+            f"{result['ratio']:.2f} times as long as plain clips, "
+            f"{result['plain_median_ms']:.3f} ms; to add a stream: {result['add_stream_ms']:.3f} ms"
+        )
     if "goal_tick_ms" in result:
         console.print(f"the tick of a goal: {result['goal_tick_ms']:.2f} ms (median)")
     for name, figures in result.get("cameras", {}).items():
