@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from uuid import uuid4
 
 import esper
@@ -11,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..components import View
+from ..engine.animation.clip import Clip
 from ..engine.assets.character import Character
 from ..engine.assets.load import add_motions, load_character
+from ..engine.assets.retarget import NotHumanoidError, loop_clip
 from ..engine.assets.simplify import with_lower_levels
 from ..engine.assets.spectator import builtin_spectator
 from ..engine.behaviour.events import Event
@@ -26,6 +29,9 @@ from .crowd import Crowd
 from .detail import DetailSystem
 from .schedule import Schedule, tick_systems
 from .spawn import spawn_crowd
+
+SHORTEST_LOOP = 1.0
+"""Seconds of the shortest motion from a file that is closed to a loop."""
 
 
 class Simulation:
@@ -117,8 +123,9 @@ class Simulation:
 def character_of(spec: CrowdSpec, scale: float | None = None) -> Character:
     """The character that a spec names, with its motions; the built-in spectator if it names none.
 
-    A spec that names BVH motions and no character gets the figure of bones of the first of them.
-    A file without coarser meshes gets some.
+    Motions that are named are shown instead of the built-in spectator's own; those of a character's
+    file are kept beside them. A human motion that does not loop is closed where it matches itself
+    best, in place. A file without coarser meshes gets some.
 
     Parameters
     ----------
@@ -133,7 +140,24 @@ def character_of(spec: CrowdSpec, scale: float | None = None) -> Character:
         If a file can't be used.
     """
     file, motions = spec.character, spec.motions
-    if not file and motions and motions[0].lower().endswith(".bvh"):
-        file, motions = motions[0], motions[1:]
-    character = with_lower_levels(load_character(file, scale)) if file else builtin_spectator()
-    return add_motions(character, motions, scale) if motions else character
+    if file:
+        character = with_lower_levels(load_character(file, scale))
+    else:
+        character = builtin_spectator()
+        character = replace(character, clips=()) if motions else character
+    if not motions:
+        return character
+    own = len(character.clips)
+    character = add_motions(character, motions, scale)
+    added = tuple(_closed(clip, character) for clip in character.clips[own:])
+    return replace(character, clips=character.clips[:own] + added)
+
+
+def _closed(clip: Clip, character: Character) -> Clip:
+    """The clip as a loop, if it is none and long enough, and the character is a human body."""
+    if clip.looping or clip.duration < SHORTEST_LOOP:
+        return clip
+    try:
+        return loop_clip(clip, character.skeleton)
+    except NotHumanoidError:
+        return clip

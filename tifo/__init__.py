@@ -13,6 +13,18 @@ from .engine.animation import controllers
 from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh
 from .engine.assets.load import add_motions, load_character
+from .engine.assets.motion_file import Motions, load_motions
+from .engine.assets.retarget import (
+    Humanoid,
+    Loop,
+    NotHumanoidError,
+    find_loop,
+    humanoid,
+    loop_clip,
+    mirror_clip,
+    retarget,
+    trim_clip,
+)
 from .engine.assets.spectator import builtin_spectator
 from .engine.behaviour.events import BallHit, Event, Goal
 from .engine.clock import Clock
@@ -50,8 +62,12 @@ __all__ = [
     "FreeCamera",
     "Goal",
     "GraphicsError",
+    "Humanoid",
+    "Loop",
     "Material",
     "MotionState",
+    "Motions",
+    "NotHumanoidError",
     "Placement",
     "RenderSystem",
     "Schedule",
@@ -73,11 +89,18 @@ __all__ = [
     "camera_presets",
     "character_of",
     "controllers",
+    "find_loop",
+    "humanoid",
     "load_character",
+    "load_motions",
+    "loop_clip",
+    "mirror_clip",
     "open_window",
     "pick_seat",
+    "retarget",
     "spawn_crowd",
     "tick_systems",
+    "trim_clip",
 ]
 
 _DRAWING = {

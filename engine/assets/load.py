@@ -9,16 +9,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from ..animation.clip import Clip
 from ..errors import AssetError
 from .bone_figure import bone_figure
 from .bvh import load_bvh
 from .character import Character
-from .motion_transfer import transfer_clip
-
-GLTF_SUFFIXES = (".glb", ".gltf")
-SUFFIXES = (*GLTF_SUFFIXES, ".bvh")
-"""Lower-case suffixes of the files that can be opened."""
+from .file_kind import suffix_of
+from .motion_file import load_motions
+from .retarget.adopt import adopt_clips
 
 
 def load_character(path: str | Path, scale: float | None = None) -> Character:
@@ -39,7 +36,7 @@ def load_character(path: str | Path, scale: float | None = None) -> Character:
     ValueError
         If `scale` is out of range.
     """
-    if _suffix(path) == ".bvh":
+    if suffix_of(path) == ".bvh":
         motion = load_bvh(path, scale)
         return bone_figure(
             motion.skeleton, Path(path).stem, (motion.clip,), motion.end_sites, motion.notes
@@ -52,22 +49,22 @@ def load_character(path: str | Path, scale: float | None = None) -> Character:
 def add_motions(
     character: Character, paths: Iterable[str | Path], scale: float | None = None
 ) -> Character:
-    """Give a character the clips of other files that were made for the same skeleton.
+    """Give a character the motions of other files, whatever skeleton they were made for.
 
-    Joints are matched by name, case included. The character may have joints that a motion lacks;
-    they stay at rest. The bones of both must agree but for one factor of size, by which the
-    motion is scaled to the character (see `motion_transfer`). A clip whose name is taken is
-    called ``stem.name`` after its file, or gets a number.
+    Motions of human bodies are retargeted (see `retarget`): they begin at the character's origin
+    and face +Z, feet on the ground. Motions of the character's very own skeleton below a root of
+    its own are taken over as they are, human or not. A clip whose name is taken is called
+    ``stem.name`` after its file, or gets a number.
 
     Parameters
     ----------
     character
         Unchanged.
     paths
-        .bvh, .glb and .gltf files.
+        .bvh, .glb and .gltf files; they need no mesh.
     scale
         Metres a unit of the BVH files among them; guessed by default. Since a motion is scaled to
-        the character's bones, it matters only where the skeletons have no bones in common.
+        the character, it matters only for notes.
 
     Returns
     -------
@@ -77,26 +74,19 @@ def add_motions(
     Raises
     ------
     AssetError
-        If a file can't be used or was made for another skeleton; says which joint differs.
+        If a file can't be used, or if it or the character is no human body and the skeletons
+        differ.
     """
     clips = list(character.clips)
     notes = list(character.notes)
     for path in paths:
-        if _suffix(path) == ".bvh":
-            motion = load_bvh(path, scale)
-            source, said = motion.skeleton, motion.notes
-            found: tuple[Clip, ...] = (motion.clip,)
-        else:
-            other = _load_gltf(path)
-            source, found, said = other.skeleton, other.clips, other.notes
-        if not found:
-            raise AssetError(path, "", "holds no motion")
+        motions = load_motions(path, scale)
         taken = {clip.name for clip in clips}
-        for clip in found:
+        for clip in adopt_clips(path, motions.clips, motions.skeleton, character.skeleton):
             name = _free_name(clip.name, Path(path).stem, taken)
             taken.add(name)
-            clips.append(replace(transfer_clip(path, clip, source, character.skeleton), name=name))
-        notes += [f"{Path(path).name}: {note}" for note in said]
+            clips.append(replace(clip, name=name))
+        notes += [f"{Path(path).name}: {note}" for note in motions.notes]
     return replace(character, clips=tuple(clips), notes=tuple(notes))
 
 
@@ -105,25 +95,6 @@ def _load_gltf(path: str | Path) -> Character:
     from .gltf import load_gltf
 
     return load_gltf(path)
-
-
-def _suffix(path: str | Path) -> str:
-    """Lower-case suffix of a file that is there, can be opened and is of a known kind."""
-    try:
-        if not Path(path).exists():
-            raise AssetError(path, "", "there is no such file")
-        if Path(path).is_dir():
-            raise AssetError(path, "", f"is a folder, expected a file ({', '.join(SUFFIXES)})")
-        if not Path(path).is_file():
-            raise AssetError(path, "", "is not a regular file")
-        suffix = Path(path).suffix.lower()
-        if suffix not in SUFFIXES:
-            kind = f"'{suffix}' files" if suffix else "files without a suffix"
-            raise AssetError(path, "", f"{kind} can't be read, only {', '.join(SUFFIXES)}")
-        with Path(path).open("rb"):
-            return suffix
-    except OSError as error:
-        raise AssetError(path, "", f"can't be read: {error.strerror or error}") from error
 
 
 def _free_name(name: str, stem: str, taken: set[str]) -> str:

@@ -73,6 +73,15 @@ def test_a_motion_is_described(bvh: Path) -> None:
     json.dumps(entry, allow_nan=False)
 
 
+def test_the_parts_of_a_body_are_shown(bvh: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    body = describe(SPECTATOR)["humanoid"]
+    assert (body["found_by"], body["missing"], body["unmapped"]) == ("names", [], ["root"])
+    assert body["joints"]["left_upper_arm"] == "upper_arm_l"
+    assert describe(bvh)["humanoid"]["is_humanoid"] is False
+    assert main(["inspect", str(SPECTATOR)]) == 0
+    assert "left_upper_arm" in capsys.readouterr().out
+
+
 def test_the_scale_is_guessed_and_said(bvh: Path) -> None:
     entry = describe(bvh)
     assert entry["unit"] == "guessed, see the notes"

@@ -15,13 +15,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..engine.animation.clip import Clip
+from ..engine.animation.skeleton import Skeleton
 from ..engine.assets.character import Character, Material, SkinnedMesh
 from ..engine.assets.load import load_character
+from ..engine.assets.retarget import humanoid
 from ..engine.errors import AssetError
 from .text import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+_WORDS = {"clip", "mesh", "material", "colour", "texture", "sides", "loops", "part", "joint"}
+"""Headers of columns that hold no numbers."""
 
 _FORMATS = {".glb": "glTF, binary", ".gltf": "glTF", ".bvh": "BVH"}
 
@@ -94,6 +99,7 @@ def describe(path: str | Path, scale: float | None = None) -> dict[str, Any]:
             "names": list(skeleton.names),
             "parents": skeleton.parents.tolist(),
         },
+        "humanoid": _humanoid(skeleton),
         "vertices": sum(len(mesh.positions) for mesh in character.meshes),
         "triangles": character.triangle_count,
         "meshes": [_mesh(mesh, character.materials) for mesh in character.meshes],
@@ -103,6 +109,21 @@ def describe(path: str | Path, scale: float | None = None) -> dict[str, Any]:
         "materials": [_material(material) for material in character.materials],
         "clips": [_clip(clip) for clip in character.clips],
         "notes": list(character.notes),
+    }
+
+
+def _humanoid(skeleton: Skeleton) -> dict[str, Any]:
+    """Which joints are which parts of a human body, for retargeting, or why it is none."""
+    try:
+        body = humanoid(skeleton)
+    except ValueError as error:
+        return {"is_humanoid": False, "cause": str(error)}
+    return {
+        "is_humanoid": True,
+        "found_by": body.found_by,
+        "joints": {part: skeleton.names[joint] for part, joint in body.joints.items()},
+        "missing": list(body.missing),
+        "unmapped": list(body.unmapped),
     }
 
 
@@ -158,6 +179,8 @@ def _print_description(entry: dict[str, Any], *, tree: bool) -> None:
         console.print(f"  {name:10}{text}")
     if tree:
         _print_tree(console, entry["skeleton"])
+    joints = entry["humanoid"].get("joints", {})
+    _print_table(console, ("part", "joint"), iter(joints.items()))
     _print_table(
         console,
         ("clip", "seconds", "keys", "keys/s", "loops", "error mm"),
@@ -226,6 +249,16 @@ def _summary(entry: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if entry["lower_levels"]:
         coarser = ", ".join(f"{count:,}" for count in entry["lower_levels"])
         yield "lower", f"{coarser} triangles in the coarser levels"
+    body = entry["humanoid"]
+    if body["is_humanoid"]:
+        missing = f"; missing {', '.join(body['missing'])}" if body["missing"] else ""
+        unmapped = body["unmapped"]
+        rests = ", ".join(unmapped[:6]) + (", ..." if len(unmapped) > 6 else "")
+        yield "humanoid", f"by {body['found_by']}{missing}"
+        if unmapped:
+            yield "unmapped", printable(f"{_count(len(unmapped), 'joint')}: {rests}")
+    else:
+        yield "humanoid", printable(body["cause"].removeprefix("is "))
     seconds = sum(clip["duration"] for clip in entry["clips"])
     yield "motion", f"{_count(len(entry['clips']), 'clip')}, {seconds:.2f} s in all"
 
@@ -244,7 +277,7 @@ def _print_table(
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for place, header in enumerate(headers):
-        numeric = header not in ("clip", "mesh", "material", "colour", "texture", "sides", "loops")
+        numeric = header not in _WORDS
         table.add_column(
             header, justify="right" if numeric else "left", overflow="fold", no_wrap=place > 0
         )
