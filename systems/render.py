@@ -9,7 +9,8 @@ from ..engine.assets.character import Character
 from ..engine.clock import Clock
 from ..engine.crowd.figure import Figure
 from ..engine.crowd.stadium_mesh import StadiumMesh
-from ..engine.render.crowd_renderer import CrowdColumns, CrowdRenderer, DrawCounts
+from ..engine.render.crowd_inputs import CrowdColumns
+from ..engine.render.crowd_renderer import CrowdRenderer, DrawCounts
 from ..engine.render.frame import Frame
 from ..engine.render.stadium_pass import StadiumPass
 from ..engine.streams.baked import BakedPoses
