@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from ...components import AgentAnimID, Appearance, BakedAnim, Detail, Placement, Transition
 from ..gl.program import Program
 from ..streams.baked import BakedPoses
+from ..streams.overlaying import OverlayStage
 from ..streams.pool import StreamPool
 from .agent_tables import AgentTables
 from .motion_table import MotionTable
+from .overlay_table import OverlayTable
 from .pose_textures import BakedTextures, PoseTextures, StreamTextures
 
 BODY = 0
@@ -23,6 +25,7 @@ class CrowdColumns:
     appearance: Appearance
     detail: Detail
     poses: tuple[StreamPool, AgentAnimID, Transition] | tuple[BakedPoses, BakedAnim]
+    overlays: OverlayStage | None = None
 
 
 class CrowdInputs:
@@ -51,6 +54,11 @@ class CrowdInputs:
             self._poses = BakedTextures(columns.poses[0])
             self._motion = MotionTable(agents, 1)
         self.defines: dict[str, int] = dict(self._poses.defines)
+        self._overlays: OverlayTable | None = None
+        if columns.overlays is not None:
+            stage, markers = columns.overlays, columns.overlays.ladder.pool.markers
+            self._overlays = OverlayTable(agents, stage.columns, stage.masks, markers)
+            self.defines["OVERLAYS"] = 1
 
     def update(self, tick: int) -> int:
         """Copy what the simulation changed; bytes copied."""
@@ -60,7 +68,10 @@ class CrowdInputs:
         copied += self._agents.update_looks(columns.appearance)
         if len(columns.poses) == 3:
             _, anim, transition = columns.poses
-            return copied + self._motion.update_streams(anim, transition, BODY, tick)
+            copied += self._motion.update_streams(anim, transition, BODY, tick)
+            if self._overlays is not None:
+                copied += self._overlays.update(anim, transition, self._motion.origin)
+            return copied
         baked, clips = columns.poses
         return copied + self._motion.update_baked(clips, baked, tick)
 
@@ -79,9 +90,13 @@ class CrowdInputs:
         self._agents.bind(program)
         self._motion.bind(program, tick, alpha)
         self._poses.bind(program, markers=markers)
+        if self._overlays is not None:
+            self._overlays.bind(program, markers=markers)
 
     def delete(self) -> None:
         """Delete everything on the GPU."""
         self._poses.delete()
         self._agents.delete()
         self._motion.delete()
+        if self._overlays is not None:
+            self._overlays.delete()

@@ -8,6 +8,7 @@ count from an origin that moves along, so that float32 never loses them.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...components import AgentAnimID, BakedAnim, Transition
 from ..gl.program import Program
@@ -53,17 +54,9 @@ class MotionTable:
         if self._version == anim.version and not moved:
             return 0
         self._version = anim.version
-        table = self._staging
-        live = table[: self._agents]
-        for first, columns in ((0, anim), (8, transition)):
-            live[:, first] = columns.row[part]
-            live[:, first + 1] = columns.start[part]
-            live[:, first + 2] = columns.target[part]
-            live[:, first + 3] = columns.t0[part] - self.origin
-        live[:, 4] = anim.rate[part]
-        live[:, 5] = transition.begin[part] - self.origin
-        live[:, 6] = transition.duration[part]
-        live[:, 7] = transition.rate[part]
+        pack_streams(
+            self._staging[: self._agents], anim, transition, (part, slice(None)), self.origin
+        )
         return self._write()
 
     def update_baked(self, anim: BakedAnim, baked: BakedPoses, tick: int) -> int:
@@ -99,3 +92,33 @@ class MotionTable:
     def _write(self) -> int:
         self._texture.write(self._staging.reshape(self._rows, -1, 4))
         return self._staging.nbytes
+
+
+def pack_streams(
+    out: NDArray[np.float32],
+    anim: AgentAnimID,
+    transition: Transition,
+    at: tuple[int | NDArray[np.int64], slice | NDArray[np.int64]],
+    origin: int,
+) -> None:
+    """Write streams, offsets and blends as the shaders read them.
+
+    Parameters
+    ----------
+    out
+        (K, 12) float32: row, start, target, t0; rate, begin, duration, source's rate; source's row,
+        start, target, t0.
+    anim, transition, at
+        The columns, and which K entries of them.
+    origin
+        Pose tick that the ticks count from.
+    """
+    for first, columns in ((0, anim), (8, transition)):
+        out[:, first] = columns.row[at]
+        out[:, first + 1] = columns.start[at]
+        out[:, first + 2] = columns.target[at]
+        out[:, first + 3] = columns.t0[at] - origin
+    out[:, 4] = anim.rate[at]
+    out[:, 5] = transition.begin[at] - origin
+    out[:, 6] = transition.duration[at]
+    out[:, 7] = transition.rate[at]

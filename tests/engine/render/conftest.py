@@ -73,18 +73,19 @@ class ShaderCrowd:
     ----------
     poses
         What `CrowdColumns.poses` holds.
-    placement, appearance
+    placement, appearance, overlays
         Of the agents.
     """
 
     poses: Streamed | tuple[BakedPoses, BakedAnim]
     placement: Placement
     appearance: Appearance
+    overlays: Any = None
 
     def __post_init__(self) -> None:
         from tifo.engine.render.crowd_inputs import CrowdColumns, CrowdInputs
 
-        columns = CrowdColumns(self.placement, self.appearance, Detail(), self.poses)
+        columns = CrowdColumns(self.placement, self.appearance, Detail(), self.poses, self.overlays)
         self.inputs = CrowdInputs(columns)
 
     def update(self, tick: int) -> int:
@@ -158,6 +159,7 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
         poses: Streamed | tuple[BakedPoses, BakedAnim],
         placement: Placement | None = None,
         appearance: Appearance | None = None,
+        overlays: Any = None,
     ) -> ShaderCrowd:
         if len(poses) == 3:
             agents = poses[1].row.shape[1]
@@ -167,6 +169,7 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
             poses,
             place_agents(agents) if placement is None else placement,
             paint_agents(agents, np.random.default_rng(0)) if appearance is None else appearance,
+            overlays,
         )
         made.append(crowd)
         return crowd
