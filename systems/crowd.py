@@ -34,17 +34,17 @@ from ..engine.streams.blend_counts import LadderCounts
 from ..engine.streams.blending import agent_palettes
 from ..engine.streams.event_feed import ClipEventFeed, Listener
 from ..engine.streams.ladder import BlendLadder, Focus
+from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
+from .crowd_overlays import BLEND_SECONDS, OverlayCalls
 
-BLEND_SECONDS = 0.4
-"""Length of a blend that nobody chose."""
 FOCUS_RADIUS = 60.0
 """Metres around a focus in which agents never jump."""
 
 
 @dataclass(slots=True, eq=False)
-class Crowd:
+class Crowd(OverlayCalls):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -57,6 +57,8 @@ class Crowd:
         The components that every crowd has.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
+    overlays
+        Motions laid over some joints, and the masks; None in a baked crowd.
     dilation
         Changes of offsets that wait or were made.
     clip_feed
@@ -81,6 +83,7 @@ class Crowd:
     anim: AgentAnimID | None = None
     transition: Transition | None = None
     ladder: BlendLadder | None = None
+    overlays: OverlayStage | None = None
     dilation: Dilation = field(default_factory=Dilation)
     clip_feed: ClipEventFeed | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
@@ -124,7 +127,7 @@ class Crowd:
         stream
             One of `pool`.
         part
-            Which part of the agents.
+            0 for the body; ``1 + k`` for the motion of overlay layer k, see `overlay`.
         duration
             Seconds of the blend, for all or for each; 0 jumps.
         offset
@@ -212,7 +215,9 @@ class Crowd:
         (K, J, 3, 4) float32 palettes in the character's model space
         """
         if self.pool is not None and self.anim is not None and self.transition is not None:
-            return agent_palettes(self.pool, self.anim, self.transition, 0, agents, tick, alpha)
+            shown = agent_palettes(self.pool, self.anim, self.transition, 0, agents, tick, alpha)
+            assert self.overlays is not None
+            return self.overlays.lay(shown, agents, tick, alpha)
         assert self.baked is not None
         poses, clips = self.baked
         seconds = (tick - 1 + alpha - clips.began[agents]) / POSE_RATE
@@ -321,7 +326,9 @@ class Crowd:
         digest = hashlib.blake2b(digest_size=16)
         components: list[Any] = [self.motion, self.seat, self.team, self.placement]
         clips = self.baked[1] if self.baked else None
-        components += [part for part in (self.anim, self.transition, clips) if part is not None]
+        overlays = self.overlays.columns if self.overlays else None
+        columns = (self.anim, self.transition, overlays, clips)
+        components += [part for part in columns if part is not None]
         for component in components:
             for column in fields(component):
                 value = getattr(component, column.name)

@@ -9,10 +9,12 @@ from ..engine.assets.character import Character
 from ..engine.clock import Clock
 from ..engine.crowd.figure import Figure
 from ..engine.crowd.stadium_mesh import StadiumMesh
-from ..engine.render.crowd_renderer import CrowdColumns, CrowdRenderer, DrawCounts
+from ..engine.render.crowd_inputs import CrowdColumns
+from ..engine.render.crowd_renderer import CrowdRenderer, DrawCounts
 from ..engine.render.frame import Frame
 from ..engine.render.stadium_pass import StadiumPass
 from ..engine.streams.baked import BakedPoses
+from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import StreamPool
 from .query import crowds
 
@@ -86,5 +88,6 @@ def _renderer(entity: int, character: Character, detail: Detail) -> CrowdRendere
         esper.component_for_entity(entity, Appearance),
         detail,
         poses,
+        esper.try_component(entity, OverlayStage),
     )
     return CrowdRenderer(character, esper.component_for_entity(entity, Figure).height, columns)

@@ -12,6 +12,7 @@ from ..components import (
     BakedAnim,
     Detail,
     MotionState,
+    Overlays,
     Placement,
     Seat,
     Section,
@@ -24,6 +25,7 @@ from ..engine.assets.character import Character
 from ..engine.behaviour.events import EventQueue
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
+from ..engine.crowd.figure_masks import figure_masks
 from ..engine.crowd.motions import sort_motions, start_streams
 from ..engine.crowd.occupancy import assign_sides, occupancy_mask
 from ..engine.crowd.seating import SeatPlan
@@ -32,7 +34,9 @@ from ..engine.crowd.ways import Way, add_ways, find_ways, start_ways, without_wa
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.event_feed import ClipEventFeed
 from ..engine.streams.ladder import BlendLadder
+from ..engine.streams.mask_table import MaskTable
 from ..engine.streams.offsets import OffsetSource, initial_offsets
+from ..engine.streams.overlaying import MAX_LAYERS, OverlayStage
 from ..engine.streams.pool import StreamPool
 from ..engine.streams.slots import SlotPool
 from ..engine.streams.stream_needs import StreamNeeds
@@ -161,14 +165,20 @@ def _add_streams(
         pool.evaluate(tick)
         pool.commit(tick)
     count = len(crowd)
-    anim = AgentAnimID.allocate(1, count, pool.store.bind_row)
+    parts_of_body = 1 + MAX_LAYERS
+    anim = AgentAnimID.allocate(parts_of_body, count, pool.store.bind_row)
     anim.row[0] = streams.draw_rows(crowd.motion.shown, rng)
     anim.start[0] = anim.target[0] = initial_offsets(offsets, count, spec.history, rng)
-    crowd.pool, crowd.anim, crowd.transition = pool, anim, Transition.allocate(1, count)
+    crowd.pool, crowd.anim, crowd.transition = pool, anim, Transition.allocate(parts_of_body, count)
     uniques, slots = UniquePool(pool), SlotPool(pool.store)
     crowd.ladder = BlendLadder(pool, uniques, slots, anim, crowd.transition, crowd.placement)
+    overlays, masks = Overlays.allocate(MAX_LAYERS, count), MaskTable(pool.skeleton)
+    for name, mask in figure_masks(pool.skeleton, figure).items():
+        masks.add(name, mask)
+    crowd.overlays = OverlayStage(crowd.ladder, overlays, masks)
     crowd.clip_feed = ClipEventFeed(pool.clip_events, crowd.seat.occupied)
     parts += [streams, uniques, slots, anim, crowd.transition, crowd.ladder]
+    parts += [overlays, crowd.overlays]
     parts += [crowd.dilation, crowd.clip_feed]
     for component in parts:
         esper.add_component(crowd.entity, component)

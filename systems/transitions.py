@@ -10,6 +10,7 @@ from ..engine.clock import Clock
 from ..engine.crowd.motions import MotionLibrary, MotionStreams
 from ..engine.crowd.ways import Ways
 from ..engine.streams.ladder import BlendLadder
+from ..engine.streams.overlaying import OverlayStage
 from .query import crowds
 
 BODY = 0
@@ -42,6 +43,9 @@ class TransitionSystem(esper.Processor):
             if state is not None and streams is not None:
                 ways = esper.try_component(entity, Ways)
                 self._want(state, ladder, streams, ways, clock.pose_tick)
+            stage = esper.try_component(entity, OverlayStage)
+            if stage is not None:
+                stage.step(clock.pose_tick, self._rng)
             ladder.step(clock.pose_tick, self._rng)
         for _, (state, baked, library) in crowds(MotionState, BakedAnim, MotionLibrary):
             self._bake(state, baked, library, clock.pose_tick)

@@ -13,9 +13,8 @@ from ..gl.api import gl
 from ..gl.program import Program
 from ..gl.state import DrawTarget
 from ..gl.vertex_array import Primitive, VertexArray
-from .agent_tables import AgentTables
+from .crowd_inputs import CrowdInputs
 from .frame import Frame
-from .pose_textures import PoseTextures
 from .skinned_pass import InstanceList
 from .state import opaque
 
@@ -39,14 +38,13 @@ class FigurePass:
         self.agents = InstanceList()
         self._vertex_array = VertexArray(self._program, [self.agents.input(divisor=0)])
 
-    def draw(self, frame: Frame, tables: AgentTables, poses: PoseTextures) -> int:
+    def draw(self, frame: Frame, inputs: CrowdInputs) -> int:
         """Draw all figures; triangles drawn, two for each."""
         if not self.agents.count:
             return 0
         program = self._program
         frame.apply(program)
-        tables.bind(program, frame.tick, frame.alpha)
-        poses.bind(program, markers=True)
+        inputs.bind(program, frame.tick, frame.alpha, markers=True)
         program["body_height"] = self._height
         program["pixel"] = 2.0 / (float(frame.projection[1, 1]) * frame.size[1])
         program["viewport"] = DrawTarget.current().viewport

@@ -15,10 +15,9 @@ from ..gl.texture import Texture2D
 from ..gl.texture_format import TextureFormat
 from ..gl.vertex_array import Primitive, VertexArray
 from ..gl.vertex_input import Attribute, VertexInput
-from .agent_tables import AgentTables
 from .body_mesh import VERTEX, Batch, make_batches
+from .crowd_inputs import CrowdInputs
 from .frame import Frame
-from .pose_textures import PoseTextures
 from .state import opaque
 
 IMAGE_UNIT = 6
@@ -85,14 +84,13 @@ class SkinnedPass:
             for level in range(levels)
         )
 
-    def draw(self, frame: Frame, tables: AgentTables, poses: PoseTextures) -> int:
+    def draw(self, frame: Frame, inputs: CrowdInputs) -> int:
         """Draw all lists; triangles drawn."""
         triangles = 0
         programs = [self._plain] if self._textured is None else [self._plain, self._textured]
         for program in programs:
             frame.apply(program)
-            tables.bind(program, frame.tick, frame.alpha)
-            poses.bind(program, markers=False)
+            inputs.bind(program, frame.tick, frame.alpha, markers=False)
             for level, agents in zip(self._levels, self.lists, strict=True):
                 for batch in level:
                     if batch.program is program and agents.count:

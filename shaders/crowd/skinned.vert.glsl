@@ -3,6 +3,7 @@
 #include "lib/frame.glsl"
 #include "lib/agent.glsl"
 #include "lib/pose.glsl"
+#include "lib/posture.glsl"
 #include "lib/skin.glsl"
 
 in vec3 position;
@@ -25,8 +26,8 @@ flat out vec3 f_tint;
 void main()
 {
     int id = int(agent);
-    mat3x4 rows = skin_matrix(id, joints, weights);
-    vec3 model = vec4(position, 1.0) * rows;
+    mat3x4 rows = skin_matrix(fetch_posture(id), joints, weights);
+    vec3 model = transformed(rows, position);
     Body body = fetch_body(id);
     f_place = to_stadium(body, model);
     f_normal = turned(body, normal * mat3(rows));

@@ -6,6 +6,11 @@
 #include "lib/light.glsl"
 #include "lib/agent.glsl"
 #include "lib/pose.glsl"
+#ifdef OVERLAYS
+#include "lib/overlay.glsl"
+
+uniform int joint_count;       // masks have the figure's joints behind the skeleton's
+#endif
 
 in uint agent;
 
@@ -29,6 +34,23 @@ const int HEAD = 0;
 const int CHEST = 1;
 const int HIPS = 2;
 
+#ifdef OVERLAYS
+// Overlays a few pixels tall: limbs keep their place on the body, but don't turn with it.
+void lay_over(inout vec3 joint[7], Layer layer)
+{
+    int root = layer_share(layer, joint_count + CHEST).x > 0.0 ? HIPS : CHEST;
+    vec3 laid[7];
+    for (int k = 0; k < 7; ++k)
+        laid[k] = vec3(0.0);
+    for (int s = 0; s < layer.count; ++s)
+        for (int k = 0; k < 7; ++k)
+            laid[k] += layer.sources[s].share * pose_texel(layer.sources[s], k).xyz;
+    vec3 moved = joint[root] - laid[root];
+    for (int k = 0; k < 7; ++k)
+        joint[k] = mix(joint[k], laid[k] + moved, layer_share(layer, joint_count + k).x);
+}
+#endif
+
 vec3 lit(vec3 albedo, vec3 normal, float open_sky, vec3 place)
 {
     return haze(tone(shade(albedo, normal, 0.3, open_sky)), place);
@@ -46,6 +68,17 @@ void main()
     for (int s = 0; s < count; ++s)
         for (int k = 0; k < 7; ++k)
             joint[k] += sources[s].share * pose_texel(sources[s], k).xyz;
+
+#ifdef OVERLAYS
+    if (overlaid) {
+        vec2 entries = texelFetch(overlay_index, agent_texel(id, 1, 0), 0).xy;
+        for (int k = 0; k < 2; ++k) {
+            Layer layer = fetch_layer(int(entries[k] + 0.5));
+            if (layer.count > 0)
+                lay_over(joint, layer);
+        }
+    }
+#endif
 
     mat3 rotation = mat3(view);
     vec3 hips = to_stadium(body, joint[HIPS]);

@@ -48,13 +48,10 @@ Shown shown_pose(float row_index, float start, float target, float t0, float rat
     return Shown(row, newer, older, age - whole, share);
 }
 
-// Fills the one or two sources of an agent's pose; returns how many.
-int fetch_shown(int agent, out Shown sources[2])
+// Fills the one or two sources of a motion as motion tables hold it; returns how many.
+// a: row start target t0; b: rate, begin, duration, source's rate; c: source's row start target t0
+int motion_sources(vec4 a, vec4 b, vec4 c, out Shown sources[2])
 {
-    vec4 a = texelFetch(animation, agent_texel(agent, 3, 0), 0);
-    vec4 b = texelFetch(animation, agent_texel(agent, 3, 1), 0);
-    vec4 c = texelFetch(animation, agent_texel(agent, 3, 2), 0);
-    // a: row start target t0; b: rate, begin, duration, source rate; c: source row start target t0
     float s = 1.0;
     if (b.z > 0.0) {
         s = clamp((alpha - 1.0 + (tick - b.y)) / b.z, 0.0, 1.0);
@@ -65,6 +62,15 @@ int fetch_shown(int agent, out Shown sources[2])
         return 1;
     sources[1] = shown_pose(c.x, c.y, c.z, c.w, b.w, 1.0 - s);
     return 2;
+}
+
+// Fills the one or two sources of an agent's pose; returns how many.
+int fetch_shown(int agent, out Shown sources[2])
+{
+    vec4 a = texelFetch(animation, agent_texel(agent, 3, 0), 0);
+    vec4 b = texelFetch(animation, agent_texel(agent, 3, 1), 0);
+    vec4 c = texelFetch(animation, agent_texel(agent, 3, 2), 0);
+    return motion_sources(a, b, c, sources);
 }
 
 vec4 place_texel(int row, int place, int x)

@@ -124,7 +124,7 @@ def test_streams_that_nobody_shows_rest_and_the_crowd_looks_alive_all_the_same(
         assert last is None or np.abs(shown - last).max() < 0.4
         last = shown
     assert int(pool.running.sum()) > calm
-    assert pool.running[np.unique(crowd.anim.row)].all()
+    assert pool.running[np.unique(crowd.anim.row[0])].all()
     # Streams that woke are spread over again.
     assert crowd.anim.target[0].std() > 4.0
 

@@ -125,7 +125,7 @@ def test_wrong_requests_are_named_and_change_nothing(simulation: Simulation) -> 
         ("there is no agent -1", lambda: crowd.transition_to_streamed([2, -1], good)),
         ("expected an id, ids", lambda: crowd.transition_to_streamed([0.5], good)),
         (r"mask has shape \(3,\)", lambda: crowd.transition_to_streamed([True] * 3, good)),
-        ("part is 1, expected 0 to 0", lambda: crowd.transition_to_streamed(0, good, 1)),
+        ("part is 3, expected 0 to 2", lambda: crowd.transition_to_streamed(0, good, 3)),
         ("stream 99 is not alive", lambda: crowd.transition_to_streamed(0, Stream(99, 1))),
         ("duration has values", lambda: crowd.transition_to_streamed(0, good, duration=-1.0)),
         ("duration has values", lambda: crowd.transition_to_streamed(0, good, duration=np.nan)),

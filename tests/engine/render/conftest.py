@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tifo.components import AgentAnimID, Appearance, BakedAnim, Placement, Transition
+from tifo.components import AgentAnimID, Appearance, BakedAnim, Detail, Placement, Transition
 from tifo.engine.assets.character import Material, SkinnedMesh
 from tifo.engine.streams import StreamPool
 from tifo.engine.streams.baked import BakedPoses
@@ -73,37 +73,24 @@ class ShaderCrowd:
     ----------
     poses
         What `CrowdColumns.poses` holds.
-    placement, appearance
+    placement, appearance, overlays
         Of the agents.
     """
 
     poses: Streamed | tuple[BakedPoses, BakedAnim]
     placement: Placement
     appearance: Appearance
-    owned: list[Any] = field(default_factory=list)
+    overlays: Any = None
 
     def __post_init__(self) -> None:
-        from tifo.engine.render.agent_tables import AgentTables
-        from tifo.engine.render.pose_textures import BakedTextures, PoseTextures, StreamTextures
+        from tifo.engine.render.crowd_inputs import CrowdColumns, CrowdInputs
 
-        self.textures: PoseTextures
-        if len(self.poses) == 3:
-            self.textures = StreamTextures(self.poses[0])
-        else:
-            self.textures = BakedTextures(self.poses[0])
-        self.tables = AgentTables(len(self.placement.yaw), 3 if len(self.poses) == 3 else 1)
-        self.owned += [self.textures, self.tables]
+        columns = CrowdColumns(self.placement, self.appearance, Detail(), self.poses, self.overlays)
+        self.inputs = CrowdInputs(columns)
 
     def update(self, tick: int) -> int:
         """Copy what changed; bytes copied."""
-        copied = self.textures.update(tick)
-        copied += self.tables.update_place(self.placement)
-        copied += self.tables.update_looks(self.appearance)
-        if len(self.poses) == 3:
-            _, anim, transition = self.poses
-            return copied + self.tables.update_streams(anim, transition, 0, tick)
-        baked, clips = self.poses
-        return copied + self.tables.update_baked(clips, baked, tick)
+        return self.inputs.update(tick)
 
     def skinned(
         self,
@@ -123,14 +110,14 @@ class ShaderCrowd:
         vertices = batch.vertices.copy()
         vertices["surface"] = surface
         program = Program(
-            "crowd/skinned.vert.glsl", defines=self.textures.defines, feedback=(output,)
+            "crowd/skinned.vert.glsl", defines=self.inputs.defines, feedback=(output,)
         )
         buffer = Buffer(vertices)
         ids = self._ids(agents)
         array = VertexArray(
             program, [VertexInput(buffer, VERTEX, normalised=("color",)), ids.input()]
         )
-        self._prepare(program, tick, alpha, markers=False)
+        self.inputs.bind(program, tick, alpha, markers=False)
         program["view"] = program["projection"] = np.eye(4, dtype=np.float32)
         out = capture(program, array, None, len(agents))[output]
         for thing in (array, buffer, ids.buffer, program):
@@ -158,15 +145,9 @@ class ShaderCrowd:
         ids.write(np.asarray(agents, np.uint32))
         return ids
 
-    def _prepare(self, program: Any, tick: int, alpha: float, *, markers: bool) -> None:
-        self.tables.bind(program, tick, alpha)
-        self.textures.bind(program, markers=markers)
-
     def delete(self) -> None:
         """Delete everything on the GPU."""
-        for thing in self.owned:
-            thing.delete()
-        self.owned.clear()
+        self.inputs.delete()
 
 
 @pytest.fixture
@@ -178,6 +159,7 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
         poses: Streamed | tuple[BakedPoses, BakedAnim],
         placement: Placement | None = None,
         appearance: Appearance | None = None,
+        overlays: Any = None,
     ) -> ShaderCrowd:
         if len(poses) == 3:
             agents = poses[1].row.shape[1]
@@ -187,6 +169,7 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
             poses,
             place_agents(agents) if placement is None else placement,
             paint_agents(agents, np.random.default_rng(0)) if appearance is None else appearance,
+            overlays,
         )
         made.append(crowd)
         return crowd

@@ -108,17 +108,15 @@ def captured(
     projection: Array,
 ) -> Any:
     """Outputs of the figures' vertex shader, (N,) records."""
+    from tifo.components import Detail
     from tifo.engine.gl import Program, VertexArray, capture
-    from tifo.engine.render.agent_tables import AgentTables
+    from tifo.engine.render.crowd_inputs import CrowdColumns, CrowdInputs
     from tifo.engine.render.frame import Frame
-    from tifo.engine.render.pose_textures import StreamTextures
     from tifo.engine.render.skinned_pass import InstanceList
 
-    textures, tables = StreamTextures(figures.pool), AgentTables(len(figures.placement.yaw), 3)
-    textures.update(tick)
-    tables.update_place(figures.placement)
-    tables.update_looks(figures.appearance)
-    tables.update_streams(figures.anim, figures.transition, 0, tick)
+    poses = (figures.pool, figures.anim, figures.transition)
+    inputs = CrowdInputs(CrowdColumns(figures.placement, figures.appearance, Detail(), poses))
+    inputs.update(tick)
     agents = InstanceList()
     agents.write(np.arange(len(figures.placement.yaw), dtype=np.uint32))
     program = Program("far/figure.vert.glsl", feedback=names)
@@ -126,13 +124,12 @@ def captured(
     size = (320, 180)
     frame = Frame(view, projection, size, tick, alpha)
     frame.apply(program)
-    tables.bind(program, tick, alpha)
-    textures.bind(program, markers=True)
+    inputs.bind(program, tick, alpha, markers=True)
     program["body_height"] = figures.figure.height
     program["pixel"] = 2.0 / (float(projection[1, 1]) * size[1])
     program["viewport"] = (0.0, 0.0, *size)
     out = capture(program, array, agents.count)[0]
-    for thing in (array, agents.buffer, program, textures, tables):
+    for thing in (array, agents.buffer, program, inputs):
         thing.delete()
     return out
 

@@ -125,7 +125,7 @@ def test_a_tick_copies_what_changed_of_uniques_and_slots(
     for unique in (storm.uniques, storm.pool):
         unique.evaluate(storm.now)
         unique.commit(storm.now)
-    copied = crowd.textures.update(storm.now)
+    copied = crowd.update(storm.now)
     row = store.static[0].nbytes + store.static_markers[0].nbytes
     slice_bytes = store.ring[0].nbytes + store.ring_markers[0].nbytes
     # The written unique, the one that plays a clip, one slice, and the table of heads.
