@@ -21,6 +21,7 @@ from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
+from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.crowd import Crowd
@@ -50,8 +51,11 @@ __all__ = [
     "FreeCamera",
     "Goal",
     "GraphicsError",
+    "JointOverride",
+    "LookAt",
     "Material",
     "MotionState",
+    "OverriddenJoints",
     "Placement",
     "RenderSystem",
     "Schedule",
@@ -74,10 +78,12 @@ __all__ = [
     "character_of",
     "controllers",
     "load_character",
+    "look_at",
     "open_window",
     "pick_seat",
     "spawn_crowd",
     "tick_systems",
+    "turn_about",
 ]
 
 _DRAWING = {
