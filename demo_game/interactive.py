@@ -11,6 +11,7 @@ from rich.console import Console
 import tifo
 
 from .app import Show, make_simulation
+from .attention import Attention
 from .overlay import Overlay
 from .recording import Clip, write_png
 
@@ -40,6 +41,7 @@ class Game:
         self.show = show
         with console.status("building the stadium"):
             self.simulation, self.camera = make_simulation(show)
+        self.attention = Attention(self.simulation)
         self.window: Any = tifo.open_window(
             show.size, "tifo", vsync=show.vsync, fullscreen=show.fullscreen
         )
@@ -78,7 +80,9 @@ class Game:
         # A clip shows even steps of time however long a picture took.
         delta = real if self._clip is None else 1 / RECORDED_RATE
         self._steer(real)
-        self.stage.draw(self.camera, 0.0 if self.paused else delta)
+        passed = 0.0 if self.paused else delta
+        self.attention.advance(passed)
+        self.stage.draw(self.camera, passed)
         if self._clip is not None:
             self._clip.add(self.stage.pixels())
         self.stage.present(self.window.get_framebuffer_size())
@@ -94,10 +98,10 @@ class Game:
         key = self._key
         presets = {key._1: "tv", key._2: "close", key._3: "bowl"}
         if symbol == key.G:
-            self.simulation.send(tifo.Goal(side=0))
+            self._score(0)
             self.overlay.say("GOAL for the home side!")
         elif symbol == key.H:
-            self.simulation.send(tifo.Goal(side=1))
+            self._score(1)
             self.overlay.say("GOAL for the away side!")
         elif symbol == key.B:
             self._shoot(*self._pointer)
@@ -172,6 +176,10 @@ class Game:
             self.camera.fly(*moves)
             self.camera.keep_above(0.4)
 
+    def _score(self, side: int) -> None:
+        self.simulation.send(tifo.Goal(side=side))
+        self.attention.goal(side)
+
     def _shoot(self, x: int, y: int) -> None:
         origin, direction = self.camera.ray(x, y, self.window.get_size())
         plan = self.simulation.plan
@@ -181,6 +189,7 @@ class Game:
             return
         px, py, pz = (float(value) for value in plan.position[:, seat])
         self.simulation.send(tifo.BallHit(place=(px, py + 1.0, pz)))
+        self.attention.stare((px, py + 1.0, pz))
         self.overlay.say(f"the ball hits seat {plan.label(seat)}")
 
 

@@ -20,6 +20,7 @@ from rich.progress import (
 import tifo
 
 from .app import Show, make_simulation
+from .attention import Attention
 from .recording import Clip, write_png
 
 PICTURES_A_SECOND = 30
@@ -83,6 +84,7 @@ def _film(
         MofNCompleteColumn(),
         TimeRemainingColumn(),
     )
+    attention = Attention(simulation)
     with ExitStack() as stack:
         progress = stack.enter_context(Progress(*columns, console=console))
         recorder = stack.enter_context(Clip(clip, stage.size, rate)) if clip else None
@@ -90,7 +92,9 @@ def _film(
         for number, due in enumerate(ticks):
             if number == int(GOAL_AT * pictures):
                 simulation.send(tifo.Goal(side=0))
+                attention.goal(0)
             simulation.run(seconds=due / 60)
+            attention.advance(due / 60)
             if recorder is not None:
                 stage.draw(camera)
                 recorder.add(stage.pixels())

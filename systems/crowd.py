@@ -29,6 +29,7 @@ from ..engine.crowd.agents import agent_ids, agent_values
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
+from ..engine.overrides import JointOverride, OverrideSet
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.blend_counts import LadderCounts
 from ..engine.streams.blending import agent_palettes
@@ -53,7 +54,7 @@ class Crowd(OverlayCalls):
         The entity that has the components.
     spec, plan, character
         What it was made from.
-    seat, placement, team, appearance, motion, detail, library, events
+    seat, placement, team, appearance, motion, detail, library, events, overrides
         The components that every crowd has.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
@@ -79,6 +80,7 @@ class Crowd(OverlayCalls):
     detail: Detail
     library: MotionLibrary
     events: EventQueue
+    overrides: OverrideSet
     pool: StreamPool | None = None
     anim: AgentAnimID | None = None
     transition: Transition | None = None
@@ -201,7 +203,7 @@ class Crowd(OverlayCalls):
     def palettes(
         self, agents: NDArray[np.int64], tick: int, alpha: float = 1.0
     ) -> NDArray[np.float32]:
-        """What agents show, evaluated on the CPU.
+        """What agents show as meshes, evaluated on the CPU.
 
         Parameters
         ----------
@@ -213,16 +215,52 @@ class Crowd(OverlayCalls):
         Returns
         -------
         (K, J, 3, 4) float32 palettes in the character's model space
+
+        Raises
+        ------
+        ValueError
+            If an override has no Python form.
         """
         if self.pool is not None and self.anim is not None and self.transition is not None:
             shown = agent_palettes(self.pool, self.anim, self.transition, 0, agents, tick, alpha)
             assert self.overlays is not None
-            return self.overlays.lay(shown, agents, tick, alpha)
-        assert self.baked is not None
-        poses, clips = self.baked
-        seconds = (tick - 1 + alpha - clips.began[agents]) / POSE_RATE
-        rows = poses.frame_rows(clips.clip[agents].astype(np.int64), clips.speed[agents], seconds)
-        return poses.palettes[rows]
+            shown = self.overlays.lay(shown, agents, tick, alpha)
+        else:
+            assert self.baked is not None
+            poses, clips = self.baked
+            seconds = (tick - 1 + alpha - clips.began[agents]) / POSE_RATE
+            clip, speed = clips.clip[agents].astype(np.int64), clips.speed[agents]
+            shown = poses.palettes[poses.frame_rows(clip, speed, seconds)]
+        self.overrides.apply(shown, agents, self.placement)
+        return shown
+
+    def add_override(self, override: JointOverride) -> None:
+        """Pose joints by code of your own, from the next picture on; see docs/overrides.md.
+
+        Raises
+        ------
+        ValueError
+            For a name that another override has, or a joint that the character doesn't have.
+        """
+        self.overrides.add(override)
+
+    def remove_override(self, name: str) -> None:
+        """Take an override away; ValueError if there is none of that name."""
+        self.overrides.remove(name)
+
+    def override_values(self, name: str, agents: int | ArrayLike, values: ArrayLike) -> None:
+        """Set the four numbers that agents have for an override.
+
+        Parameters
+        ----------
+        name
+            Of the override.
+        agents
+            An id, ids, or a (N,) boolean mask.
+        values
+            (4,) numbers for all of them, or (K, 4).
+        """
+        self.overrides.set_values(name, agent_ids(agents, len(self)), values)
 
     def dilate(
         self, agents: NDArray[np.int64], targets: NDArray[np.float32], seconds: float

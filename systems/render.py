@@ -9,6 +9,7 @@ from ..engine.assets.character import Character
 from ..engine.clock import Clock
 from ..engine.crowd.figure import Figure
 from ..engine.crowd.stadium_mesh import StadiumMesh
+from ..engine.overrides import OverrideSet
 from ..engine.render.crowd_inputs import CrowdColumns
 from ..engine.render.crowd_renderer import CrowdRenderer, DrawCounts
 from ..engine.render.frame import Frame
@@ -89,5 +90,6 @@ def _renderer(entity: int, character: Character, detail: Detail) -> CrowdRendere
         detail,
         poses,
         esper.try_component(entity, OverlayStage),
+        esper.try_component(entity, OverrideSet),
     )
     return CrowdRenderer(character, esper.component_for_entity(entity, Figure).height, columns)

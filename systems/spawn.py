@@ -31,6 +31,7 @@ from ..engine.crowd.occupancy import assign_sides, occupancy_mask
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.crowd.ways import Way, add_ways, find_ways, start_ways, without_ways
+from ..engine.overrides import OverrideSet
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.event_feed import ClipEventFeed
 from ..engine.streams.ladder import BlendLadder
@@ -93,6 +94,7 @@ def spawn_crowd(
         detail=Detail(),
         library=library,
         events=EventQueue(),
+        overrides=OverrideSet(character.skeleton, count),
     )
     crowd.entity = esper.create_entity(
         crowd.seat,
@@ -103,6 +105,7 @@ def spawn_crowd(
         crowd.detail,
         crowd.library,
         crowd.events,
+        crowd.overrides,
         figure,
         character,
     )

@@ -33,6 +33,7 @@ from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
+from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.crowd import Crowd
@@ -63,11 +64,14 @@ __all__ = [
     "Goal",
     "GraphicsError",
     "Humanoid",
+    "JointOverride",
+    "LookAt",
     "Loop",
     "Material",
     "MotionState",
     "Motions",
     "NotHumanoidError",
+    "OverriddenJoints",
     "Placement",
     "RenderSystem",
     "Schedule",
@@ -93,6 +97,7 @@ __all__ = [
     "humanoid",
     "load_character",
     "load_motions",
+    "look_at",
     "loop_clip",
     "mirror_clip",
     "open_window",
@@ -101,6 +106,7 @@ __all__ = [
     "spawn_crowd",
     "tick_systems",
     "trim_clip",
+    "turn_about",
 ]
 
 _DRAWING = {

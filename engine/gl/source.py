@@ -70,7 +70,8 @@ class ShaderSource:
         """Rewrite the positions in a compiler's log to ``file:line`` and quote those lines.
 
         ``0:12(19): error: `x' undeclared`` becomes ``lib/skin.glsl:4: error: `x' undeclared`` and
-        below it the source line. Lines of the log in no known form are kept as they are.
+        below it the source line. An include whose name has a space is no file: ``my text, line 4``.
+        Lines of the log in no known form are kept as they are.
         """
         flat = self.text.split("\n")
         out: list[str] = []
@@ -87,7 +88,8 @@ class ShaderSource:
                     kind = found.groupdict().get("kind")
                     label = f"{kind.lower()}: " if kind else ""
                     rest = entry[found.end() :].rstrip()
-                    out[-1] = f"{file}:{line}: {label}{rest}"
+                    place = f"{file}, line {line}" if " " in file else f"{file}:{line}"
+                    out[-1] = f"{place}: {label}{rest}"
                     if number != quoted:
                         out.append(f"    {flat[number - 1].strip()}")
                     quoted = number

@@ -7,7 +7,7 @@ the colour in the vertices; each picture needs a batch of its own.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +70,24 @@ def make_batches(meshes: Sequence[SkinnedMesh], materials: Sequence[Material]) -
         )
         for (picture, double_sided), group in groups.items()
     )
+
+
+def split_batch(batch: Batch, joints: NDArray[np.bool_]) -> tuple[Batch, Batch]:
+    """The triangles of a batch that move with none of some joints, and those that do.
+
+    Parameters
+    ----------
+    batch
+        What is split; both parts keep all of its vertices.
+    joints
+        (J,) which joints.
+    """
+    vertices = batch.vertices
+    moved = ((vertices["weights"] > 0.0) & joints[vertices["joints"]]).any(axis=1)
+    triangles = batch.indices.reshape(-1, 3)
+    there = moved[triangles].any(axis=1)
+    apart, with_them = triangles[~there].ravel(), triangles[there].ravel()
+    return replace(batch, indices=apart), replace(batch, indices=with_them)
 
 
 def _vertices(mesh: SkinnedMesh, material: Material) -> NDArray[np.void]:

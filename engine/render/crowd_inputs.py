@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...components import AgentAnimID, Appearance, BakedAnim, Detail, Placement, Transition
 from ..gl.program import Program
+from ..gl.source import Defines
+from ..overrides.override_set import OverrideSet
 from ..streams.baked import BakedPoses
 from ..streams.overlaying import OverlayStage
 from ..streams.pool import StreamPool
 from .agent_tables import AgentTables
 from .motion_table import MotionTable
 from .overlay_table import OverlayTable
+from .override_tables import OverrideTables
 from .pose_textures import BakedTextures, PoseTextures, StreamTextures
 
 BODY = 0
@@ -19,13 +26,14 @@ BODY = 0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CrowdColumns:
-    """What drawing reads of a crowd: streams with their blends, or baked poses."""
+    """What drawing reads of a crowd: streams with their blends or baked poses, and overrides."""
 
     placement: Placement
     appearance: Appearance
     detail: Detail
     poses: tuple[StreamPool, AgentAnimID, Transition] | tuple[BakedPoses, BakedAnim]
     overlays: OverlayStage | None = None
+    overrides: OverrideSet | None = None
 
 
 class CrowdInputs:
@@ -39,7 +47,7 @@ class CrowdInputs:
     Attributes
     ----------
     defines
-        What programs that read the crowd are made with.
+        What programs that read the crowd, but not its palettes, are made with.
     """
 
     def __init__(self, columns: CrowdColumns) -> None:
@@ -59,6 +67,49 @@ class CrowdInputs:
             stage, markers = columns.overlays, columns.overlays.ladder.pool.markers
             self._overlays = OverlayTable(agents, stage.columns, stage.masks, markers)
             self.defines["OVERLAYS"] = 1
+        overrides = columns.overrides
+        self._overrides = None if overrides is None else OverrideTables(overrides)
+
+    @property
+    def revision(self) -> int:
+        """Changes when programs that read palettes have to be made anew."""
+        return 0 if self._overrides is None else self._overrides.revision
+
+    @property
+    def overridden(self) -> NDArray[np.bool_] | None:
+        """(J,) joints that overrides reach; None without overrides."""
+        return None if self._overrides is None else self._overrides.reached
+
+    def make_program(
+        self,
+        vertex: str,
+        fragment: str | None = None,
+        *,
+        defines: Defines | None = None,
+        feedback: Sequence[str] = (),
+    ) -> Program:
+        """A program that reads palettes through ``lib/posture.glsl``.
+
+        Parameters are as for `Program`. Where there are overrides, a program for vertices that none
+        of them reaches is faster with ``UNTOUCHED`` defined.
+
+        Raises
+        ------
+        GraphicsError
+            When it does not compile; names the override, if one is at fault.
+        """
+        whole = {**self.defines, **(defines or {})}
+        tables = self._overrides
+        if tables is None:
+            return Program(vertex, fragment, defines=whole, feedback=feedback)
+        with tables.blaming(vertex):
+            return Program(
+                vertex,
+                fragment,
+                defines={**whole, **tables.defines},
+                includes=tables.includes,
+                feedback=feedback,
+            )
 
     def update(self, tick: int) -> int:
         """Copy what the simulation changed; bytes copied."""
@@ -66,6 +117,8 @@ class CrowdInputs:
         copied = self._poses.update(tick)
         copied += self._agents.update_place(columns.placement)
         copied += self._agents.update_looks(columns.appearance)
+        if self._overrides is not None:
+            copied += self._overrides.update()
         if len(columns.poses) == 3:
             _, anim, transition = columns.poses
             copied += self._motion.update_streams(anim, transition, BODY, tick)
@@ -81,7 +134,7 @@ class CrowdInputs:
         Parameters
         ----------
         program
-            Made with `defines`.
+            Made with `defines`, or by `make_program` if it reads palettes.
         tick, alpha
             Pose tick and the fraction of it that has passed.
         markers
@@ -92,6 +145,8 @@ class CrowdInputs:
         self._poses.bind(program, markers=markers)
         if self._overlays is not None:
             self._overlays.bind(program, markers=markers)
+        if self._overrides is not None and not markers:
+            self._overrides.bind(program)
 
     def delete(self) -> None:
         """Delete everything on the GPU."""
@@ -100,3 +155,5 @@ class CrowdInputs:
         self._motion.delete()
         if self._overlays is not None:
             self._overlays.delete()
+        if self._overrides is not None:
+            self._overrides.delete()

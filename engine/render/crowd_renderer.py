@@ -34,27 +34,45 @@ class CrowdRenderer:
     """
 
     def __init__(self, character: Character, height: float, columns: CrowdColumns) -> None:
+        self._character = character
         self._columns = columns
         self._inputs = CrowdInputs(columns)
-        self._skinned = SkinnedPass(character, self._inputs.defines, len(Level) - 1)
+        self._revision = self._inputs.revision
+        self._skinned: SkinnedPass | None = None
         self._figures = FigurePass(height, self._inputs.defines)
         self.counts = DrawCounts()
 
     def update(self, tick: int) -> None:
-        """Copy what the simulation changed."""
+        """Copy what the simulation changed.
+
+        Raises
+        ------
+        GraphicsError
+            For an override that does not compile.
+        """
         uploaded = self._inputs.update(tick)
-        lists = (*self._skinned.lists, self._figures.agents)
+        lists = (*self._current().lists, self._figures.agents)
         for agents, ids in zip(lists, self._columns.detail.agents, strict=True):
             uploaded += agents.write(ids)
         self.counts.uploaded = uploaded
 
     def draw(self, frame: Frame) -> None:
         """Draw what `update` copied into the bound framebuffer."""
-        self.counts.triangles = self._skinned.draw(frame, self._inputs)
+        self.counts.triangles = self._current().draw(frame, self._inputs)
         self.counts.triangles += self._figures.draw(frame, self._inputs)
 
     def delete(self) -> None:
         """Delete everything on the GPU."""
         self._inputs.delete()
-        self._skinned.delete()
+        if self._skinned is not None:
+            self._skinned.delete()
         self._figures.delete()
+
+    def _current(self) -> SkinnedPass:
+        """The pass whose programs have the overrides that there are now."""
+        if self._skinned is None or self._revision != self._inputs.revision:
+            made = SkinnedPass(self._character, self._inputs, len(Level) - 1)
+            if self._skinned is not None:
+                self._skinned.delete()
+            self._skinned, self._revision = made, self._inputs.revision
+        return self._skinned

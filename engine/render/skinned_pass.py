@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..gl.texture import Texture2D
 from ..gl.texture_format import TextureFormat
 from ..gl.vertex_array import Primitive, VertexArray
 from ..gl.vertex_input import Attribute, VertexInput
-from .body_mesh import VERTEX, Batch, make_batches
+from .body_mesh import VERTEX, Batch, make_batches, split_batch
 from .crowd_inputs import CrowdInputs
 from .frame import Frame
 from .state import opaque
@@ -62,24 +61,22 @@ class SkinnedPass:
     ----------
     character
         Meshes and materials; missing coarser levels are replaced by the coarsest there is.
-    defines
-        Of the pose source.
+    inputs
+        The crowd's, which make the programs.
     levels
         How many lists of agents there are.
     """
 
-    def __init__(self, character: Character, defines: Mapping[str, int], levels: int) -> None:
-        vertex, fragment = "crowd/skinned.vert.glsl", "crowd/skinned.frag.glsl"
-        self._plain = Program(vertex, fragment, defines=dict(defines))
-        self._textured: Program | None = None
-        if any(material.image is not None for material in character.materials):
-            self._textured = Program(vertex, fragment, defines={**defines, "TEXTURED": 1})
+    def __init__(self, character: Character, inputs: CrowdInputs, levels: int) -> None:
+        self._inputs = inputs
+        self._programs: dict[frozenset[str], Program] = {}
         meshes = [character.meshes, *character.lower_levels]
         self.lists = tuple(InstanceList() for _ in range(levels))
         self._levels = tuple(
             tuple(
-                self._upload(batch, self.lists[level])
+                self._upload(part, self.lists[level], switches)
                 for batch in make_batches(meshes[min(level, len(meshes) - 1)], character.materials)
+                for part, switches in _parts(batch, inputs.overridden)
             )
             for level in range(levels)
         )
@@ -87,8 +84,7 @@ class SkinnedPass:
     def draw(self, frame: Frame, inputs: CrowdInputs) -> int:
         """Draw all lists; triangles drawn."""
         triangles = 0
-        programs = [self._plain] if self._textured is None else [self._plain, self._textured]
-        for program in programs:
+        for program in self._programs.values():
             frame.apply(program)
             inputs.bind(program, frame.tick, frame.alpha, markers=False)
             for level, agents in zip(self._levels, self.lists, strict=True):
@@ -105,12 +101,15 @@ class SkinnedPass:
         batch.vertex_array.draw_instanced(Primitive.TRIANGLES, None, instances)
         return batch.buffers[1].nbytes // 12 * instances
 
-    def _upload(self, batch: Batch, agents: InstanceList) -> _Drawn:
-        program = self._plain
-        image = None
-        if batch.image is not None and self._textured is not None:
-            program = self._textured
-            image = _picture(batch.image)
+    def _upload(self, batch: Batch, agents: InstanceList, switches: frozenset[str]) -> _Drawn:
+        if switches not in self._programs:
+            self._programs[switches] = self._inputs.make_program(
+                "crowd/skinned.vert.glsl",
+                "crowd/skinned.frag.glsl",
+                defines=dict.fromkeys(sorted(switches), 1),
+            )
+        program = self._programs[switches]
+        image = None if batch.image is None else _picture(batch.image)
         vertices = Buffer(batch.vertices)
         indices = Buffer(batch.indices)
         vertex_array = VertexArray(
@@ -131,9 +130,24 @@ class SkinnedPass:
                     batch.image.delete()
         for agents in self.lists:
             agents.buffer.delete()
-        self._plain.delete()
-        if self._textured is not None:
-            self._textured.delete()
+        for program in self._programs.values():
+            program.delete()
+
+
+def _parts(
+    batch: Batch, overridden: NDArray[np.bool_] | None
+) -> list[tuple[Batch, frozenset[str]]]:
+    """A batch, and what its program is switched to; in two where overrides reach some of it.
+
+    Most of a body is not a head: on the processor, code that is jumped over costs as much as code
+    that runs.
+    """
+    switches = frozenset[str]() if batch.image is None else frozenset({"TEXTURED"})
+    if overridden is None:
+        return [(batch, switches)]
+    apart, reached = split_batch(batch, overridden)
+    found = [(apart, switches | {"UNTOUCHED"}), (reached, switches)]
+    return [(part, kinds) for part, kinds in found if len(part.indices)]
 
 
 def _picture(image: NDArray[np.uint8]) -> Texture2D:

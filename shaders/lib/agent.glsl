@@ -1,5 +1,5 @@
 // One agent's row of the crowd's tables, 256 agents a texture row.
-// Provides Body, fetch_body(), to_stadium(), agent_colour().
+// Provides Body, fetch_body(), to_stadium(), to_model(), agent_colour().
 uniform sampler2D placement;   // 2 texels: x y z scale; sin yaw, cos yaw, unused, unused
 uniform sampler2D looks;       // 5 texels, sRGB: skin hair shirt trousers shoes
 
@@ -30,6 +30,12 @@ vec3 turned(Body body, vec3 v)
 vec3 to_stadium(Body body, vec3 model)
 {
     return body.place + body.scale * turned(body, model);
+}
+
+vec3 to_model(Body body, vec3 stadium)
+{
+    vec3 v = (stadium - body.place) / body.scale;
+    return vec3(body.turn.y * v.x - body.turn.x * v.z, v.y, body.turn.x * v.x + body.turn.y * v.z);
 }
 
 vec3 agent_colour(int agent, int surface)

@@ -1,5 +1,5 @@
 // What an agent's joints do: the palette of any joint, with all that is mixed into it.
-// Provides Posture, fetch_posture(), joint_rows(); needs pose.glsl.
+// Provides Posture, fetch_posture(), joint_rows(); needs agent.glsl and pose.glsl.
 #include "lib/affine.glsl"
 #ifdef OVERLAYS
 #include "lib/overlay.glsl"
@@ -11,6 +11,10 @@ struct Posture {
     int count;
 #ifdef OVERLAYS
     Layer layers[2];
+#endif
+#ifdef OVERRIDES
+    int agent;
+    Body body;
 #endif
 };
 
@@ -25,6 +29,10 @@ Posture fetch_posture(int agent)
         posture.layers[0] = fetch_layer(int(entries.x + 0.5));
         posture.layers[1] = fetch_layer(int(entries.y + 0.5));
     }
+#endif
+#ifdef OVERRIDES
+    posture.agent = agent;
+    posture.body = fetch_body(agent);
 #endif
     return posture;
 }
@@ -80,11 +88,26 @@ mat3x4 layered_rows(Posture posture, int joint)
 }
 #endif
 
-mat3x4 joint_rows(Posture posture, int joint)
+// What animation makes of a joint.
+mat3x4 animated_rows(Posture posture, int joint)
 {
 #ifdef OVERLAYS
     return layered_rows(posture, joint);
 #else
     return mixed_rows(posture.sources, posture.count, joint);
+#endif
+}
+
+#ifdef OVERRIDES
+#include "lib/overrides.glsl"
+#endif
+
+// With UNTOUCHED only for joints that no override reaches.
+mat3x4 joint_rows(Posture posture, int joint)
+{
+#if defined(OVERRIDES) && !defined(UNTOUCHED)
+    return overridden_rows(posture, joint);
+#else
+    return animated_rows(posture, joint);
 #endif
 }

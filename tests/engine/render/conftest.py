@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tifo.components import AgentAnimID, Appearance, BakedAnim, Detail, Placement, Transition
 from tifo.engine.assets.character import Material, SkinnedMesh
+from tifo.engine.overrides import OverrideSet
 from tifo.engine.streams import StreamPool
 from tifo.engine.streams.baked import BakedPoses
 
@@ -73,7 +74,7 @@ class ShaderCrowd:
     ----------
     poses
         What `CrowdColumns.poses` holds.
-    placement, appearance, overlays
+    placement, appearance, overlays, overrides
         Of the agents.
     """
 
@@ -81,11 +82,14 @@ class ShaderCrowd:
     placement: Placement
     appearance: Appearance
     overlays: Any = None
+    overrides: OverrideSet | None = None
 
     def __post_init__(self) -> None:
         from tifo.engine.render.crowd_inputs import CrowdColumns, CrowdInputs
 
-        columns = CrowdColumns(self.placement, self.appearance, Detail(), self.poses, self.overlays)
+        columns = CrowdColumns(
+            self.placement, self.appearance, Detail(), self.poses, self.overlays, self.overrides
+        )
         self.inputs = CrowdInputs(columns)
 
     def update(self, tick: int) -> int:
@@ -103,15 +107,13 @@ class ShaderCrowd:
         surface: int = 255,
     ) -> NDArray[np.float32]:
         """(K, V, ...) output of the skinning shader for K agents and V vertices."""
-        from tifo.engine.gl import Buffer, Program, VertexArray, VertexInput, capture
+        from tifo.engine.gl import Buffer, VertexArray, VertexInput, capture
         from tifo.engine.render.body_mesh import VERTEX, make_batches
 
         (batch,) = make_batches((mesh,), (Material("probe"),))
         vertices = batch.vertices.copy()
         vertices["surface"] = surface
-        program = Program(
-            "crowd/skinned.vert.glsl", defines=self.inputs.defines, feedback=(output,)
-        )
+        program = self.inputs.make_program("crowd/skinned.vert.glsl", feedback=(output,))
         buffer = Buffer(vertices)
         ids = self._ids(agents)
         array = VertexArray(
@@ -150,6 +152,12 @@ class ShaderCrowd:
         self.inputs.delete()
 
 
+@pytest.fixture(name="probe_mesh")
+def probe_mesh_fixture() -> Callable[[int], SkinnedMesh]:
+    """Make meshes whose skinned vertices tell palettes; see `probe_mesh`."""
+    return probe_mesh
+
+
 @pytest.fixture
 def shader_crowd(gl: Any) -> Iterator[Any]:
     """Make crowds whose vertex shaders can be run for their numbers; see `ShaderCrowd`."""
@@ -160,6 +168,7 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
         placement: Placement | None = None,
         appearance: Appearance | None = None,
         overlays: Any = None,
+        overrides: OverrideSet | None = None,
     ) -> ShaderCrowd:
         if len(poses) == 3:
             agents = poses[1].row.shape[1]
@@ -170,6 +179,7 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
             place_agents(agents) if placement is None else placement,
             paint_agents(agents, np.random.default_rng(0)) if appearance is None else appearance,
             overlays,
+            overrides,
         )
         made.append(crowd)
         return crowd
