@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...components import AgentAnimID, Appearance, BakedAnim, Detail, Placement, Transition
+from ...components import AgentAnimID, Appearance, BakedAnim, Body, Detail, Placement, Transition
+from ..crowd.physique import Physique
 from ..gl.program import Program
 from ..streams.baked import BakedPoses
 from ..streams.overlaying import OverlayStage
@@ -26,6 +27,8 @@ class CrowdColumns:
     detail: Detail
     poses: tuple[StreamPool, AgentAnimID, Transition] | tuple[BakedPoses, BakedAnim]
     overlays: OverlayStage | None = None
+    body: Body | None = None
+    physique: Physique | None = None
 
 
 class CrowdInputs:
@@ -64,7 +67,7 @@ class CrowdInputs:
         """Copy what the simulation changed; bytes copied."""
         columns = self._columns
         copied = self._poses.update(tick)
-        copied += self._agents.update_place(columns.placement)
+        copied += self._agents.update_place(columns.placement, columns.body, columns.physique)
         copied += self._agents.update_looks(columns.appearance)
         if len(columns.poses) == 3:
             _, anim, transition = columns.poses
@@ -89,9 +92,20 @@ class CrowdInputs:
         """
         self._agents.bind(program)
         self._motion.bind(program, tick, alpha)
+        self._bind_physique(program, markers=markers)
         self._poses.bind(program, markers=markers)
         if self._overlays is not None:
             self._overlays.bind(program, markers=markers)
+
+    def _bind_physique(self, program: Program, *, markers: bool) -> None:
+        physique = self._columns.physique
+        seats = None if physique is None else physique.seats
+        none = (0.0, 0.0, 0.0)
+        program["seat"] = (seats.sitting, seats.standing, seats.seat) if seats else none
+        if not markers:
+            program["head_centre"] = physique.morphs.head_centre if physique else none
+            program["hips_joint"] = physique.hips if physique else 0
+            program["hips_bind"] = physique.hips_bind if physique else none
 
     def delete(self) -> None:
         """Delete everything on the GPU."""

@@ -36,7 +36,8 @@ class CrowdRenderer:
     def __init__(self, character: Character, height: float, columns: CrowdColumns) -> None:
         self._columns = columns
         self._inputs = CrowdInputs(columns)
-        self._skinned = SkinnedPass(character, self._inputs.defines, len(Level) - 1)
+        morphs = None if columns.physique is None else columns.physique.morphs
+        self._skinned = SkinnedPass(character, self._inputs.defines, len(Level) - 1, morphs)
         self._figures = FigurePass(height, self._inputs.defines)
         self.counts = DrawCounts()
 

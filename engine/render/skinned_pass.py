@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assets.character import Character
+from ..crowd.morphs import MorphWeights
 from ..gl.buffer import Buffer
 from ..gl.program import Program
 from ..gl.texture import Texture2D
 from ..gl.texture_format import TextureFormat
 from ..gl.vertex_array import Primitive, VertexArray
 from ..gl.vertex_input import Attribute, VertexInput
-from .body_mesh import VERTEX, Batch, make_batches
+from .body_mesh import NORMALISED, VERTEX, Batch, make_batches
 from .crowd_inputs import CrowdInputs
 from .frame import Frame
 from .state import opaque
@@ -66,9 +67,17 @@ class SkinnedPass:
         Of the pose source.
     levels
         How many lists of agents there are.
+    morphs
+        How the meshes take part in the morphs.
     """
 
-    def __init__(self, character: Character, defines: Mapping[str, int], levels: int) -> None:
+    def __init__(
+        self,
+        character: Character,
+        defines: Mapping[str, int],
+        levels: int,
+        morphs: MorphWeights | None = None,
+    ) -> None:
         vertex, fragment = "crowd/skinned.vert.glsl", "crowd/skinned.frag.glsl"
         self._plain = Program(vertex, fragment, defines=dict(defines))
         self._textured: Program | None = None
@@ -79,7 +88,9 @@ class SkinnedPass:
         self._levels = tuple(
             tuple(
                 self._upload(batch, self.lists[level])
-                for batch in make_batches(meshes[min(level, len(meshes) - 1)], character.materials)
+                for batch in make_batches(
+                    meshes[min(level, len(meshes) - 1)], character.materials, morphs
+                )
             )
             for level in range(levels)
         )
@@ -115,7 +126,7 @@ class SkinnedPass:
         indices = Buffer(batch.indices)
         vertex_array = VertexArray(
             program,
-            [VertexInput(vertices, VERTEX, normalised=("color",)), agents.input()],
+            [VertexInput(vertices, VERTEX, normalised=NORMALISED), agents.input()],
             indices,
         )
         return _Drawn(program, vertex_array, (vertices, indices), image, batch.double_sided)

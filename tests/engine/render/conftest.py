@@ -104,7 +104,7 @@ class ShaderCrowd:
     ) -> NDArray[np.float32]:
         """(K, V, ...) output of the skinning shader for K agents and V vertices."""
         from tifo.engine.gl import Buffer, Program, VertexArray, VertexInput, capture
-        from tifo.engine.render.body_mesh import VERTEX, make_batches
+        from tifo.engine.render.body_mesh import NORMALISED, VERTEX, make_batches
 
         (batch,) = make_batches((mesh,), (Material("probe"),))
         vertices = batch.vertices.copy()
@@ -115,7 +115,7 @@ class ShaderCrowd:
         buffer = Buffer(vertices)
         ids = self._ids(agents)
         array = VertexArray(
-            program, [VertexInput(buffer, VERTEX, normalised=("color",)), ids.input()]
+            program, [VertexInput(buffer, VERTEX, normalised=NORMALISED), ids.input()]
         )
         self.inputs.bind(program, tick, alpha, markers=False)
         program["view"] = program["projection"] = np.eye(4, dtype=np.float32)
