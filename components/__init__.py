@@ -6,6 +6,7 @@ and is never reused. Nothing here knows of systems, engines or drawing.
 
 from .animation import AgentAnimID, BakedAnim, Transition
 from .appearance import Appearance
+from .body import Body
 from .detail import Detail, Level
 from .dilation import Dilation, DilationRequest
 from .motion import MotionState
@@ -19,6 +20,7 @@ __all__ = [
     "AgentAnimID",
     "Appearance",
     "BakedAnim",
+    "Body",
     "Detail",
     "Dilation",
     "DilationRequest",

@@ -14,6 +14,7 @@ from ..components import (
     AgentAnimID,
     Appearance,
     BakedAnim,
+    Body,
     Detail,
     Dilation,
     DilationRequest,
@@ -27,6 +28,7 @@ from ..engine.assets.character import Character
 from ..engine.behaviour.events import Event, EventQueue
 from ..engine.crowd.agents import agent_ids, agent_values
 from ..engine.crowd.motions import MotionLibrary
+from ..engine.crowd.physique import Physique
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.overrides import JointOverride, OverrideSet
@@ -54,7 +56,7 @@ class Crowd(OverlayCalls):
         The entity that has the components.
     spec, plan, character
         What it was made from.
-    seat, placement, team, appearance, motion, detail, library, events, overrides
+    seat, placement, body, team, appearance, motion, detail, library, events, overrides
         The components that every crowd has.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
@@ -64,6 +66,8 @@ class Crowd(OverlayCalls):
         Changes of offsets that wait or were made.
     clip_feed
         Clip events; None in a baked crowd.
+    physique
+        Proportions of the character, its body types and the seats.
     baked
         Baked poses and who shows which; None in a streamed crowd.
     """
@@ -74,6 +78,7 @@ class Crowd(OverlayCalls):
     character: Character
     seat: Seat
     placement: Placement
+    body: Body
     team: Team
     appearance: Appearance
     motion: MotionState
@@ -89,6 +94,7 @@ class Crowd(OverlayCalls):
     dilation: Dilation = field(default_factory=Dilation)
     clip_feed: ClipEventFeed | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
+    physique: Physique | None = None
 
     def __len__(self) -> int:
         """Number of agents, absent ones included."""
@@ -193,7 +199,8 @@ class Crowd(OverlayCalls):
         ids = agent_ids(agents, len(self))
         seconds = agent_values("duration", duration, len(ids), 0.0, np.inf)
         poses = agent_values("offset", offset, len(ids), 0.0, longest, drawn=True)
-        ladder.ask(part, ids, row, poses, seconds * np.float32(POSE_RATE))
+        rows = ladder.pool.twins.resolve(row, self.body.kind[ids])
+        ladder.ask(part, ids, rows, poses, seconds * np.float32(POSE_RATE))
 
     def _ladder(self) -> BlendLadder:
         if self.ladder is None:
@@ -362,7 +369,7 @@ class Crowd(OverlayCalls):
     def state_hash(self) -> str:
         """Digest of everything that the simulation decided; equal for equal seeds and inputs."""
         digest = hashlib.blake2b(digest_size=16)
-        components: list[Any] = [self.motion, self.seat, self.team, self.placement]
+        components: list[Any] = [self.motion, self.seat, self.team, self.placement, self.body]
         clips = self.baked[1] if self.baked else None
         overlays = self.overlays.columns if self.overlays else None
         columns = (self.anim, self.transition, overlays, clips)

@@ -4,10 +4,20 @@ from __future__ import annotations
 
 import esper
 
-from ..components import AgentAnimID, Appearance, BakedAnim, Detail, Placement, Transition, View
+from ..components import (
+    AgentAnimID,
+    Appearance,
+    BakedAnim,
+    Body,
+    Detail,
+    Placement,
+    Transition,
+    View,
+)
 from ..engine.assets.character import Character
 from ..engine.clock import Clock
 from ..engine.crowd.figure import Figure
+from ..engine.crowd.physique import Physique
 from ..engine.crowd.stadium_mesh import StadiumMesh
 from ..engine.overrides import OverrideSet
 from ..engine.render.crowd_inputs import CrowdColumns
@@ -91,5 +101,7 @@ def _renderer(entity: int, character: Character, detail: Detail) -> CrowdRendere
         poses,
         esper.try_component(entity, OverlayStage),
         esper.try_component(entity, OverrideSet),
+        esper.try_component(entity, Body),
+        esper.try_component(entity, Physique),
     )
     return CrowdRenderer(character, esper.component_for_entity(entity, Figure).height, columns)

@@ -6,6 +6,7 @@ from typing import Any
 
 import esper
 import numpy as np
+from numpy.typing import NDArray
 
 from ..components import (
     AgentAnimID,
@@ -23,13 +24,17 @@ from ..engine.animation.clip import Clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
 from ..engine.behaviour.events import EventQueue
+from ..engine.crowd.body_types import make_body_types
+from ..engine.crowd.builds import draw_bodies
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
 from ..engine.crowd.figure_masks import figure_masks
 from ..engine.crowd.motions import sort_motions, start_streams
 from ..engine.crowd.occupancy import assign_sides, occupancy_mask
+from ..engine.crowd.physique import measure
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
+from ..engine.crowd.twin_streams import affordable_streams, start_twins
 from ..engine.crowd.ways import Way, add_ways, find_ways, start_ways, without_ways
 from ..engine.overrides import OverrideSet
 from ..engine.streams.baked import BakedPoses
@@ -68,8 +73,10 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(5)
-    rng_seats, rng_sides, rng_looks, rng_motion, rng_place = map(np.random.default_rng, seeds)
+    seeds = np.random.SeedSequence(spec.seed).spawn(6)
+    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies = map(
+        np.random.default_rng, seeds
+    )
     clips = character.clips or (_rest_clip(character),)
     library = sort_motions(clips)
     plans = None
@@ -81,13 +88,15 @@ def spawn_crowd(
     occupied = occupancy_mask(plan, spec, rng_seats)
     side = assign_sides(plan, spec, rng_sides)
     count = plan.count
+    body, size = draw_bodies(count, spec.children, spec.old, figure.height, rng_bodies)
     crowd = Crowd(
         entity=0,
         spec=spec,
         plan=plan,
         character=character,
         seat=Seat(plan.row, plan.column, plan.section, occupied),
-        placement=_place(plan, figure, rng_place),
+        placement=_place(plan, figure, size, rng_place),
+        body=body,
         team=Team(side),
         appearance=draw_appearance(side, rng_looks),
         motion=MotionState.allocate(library.draw_innate(count, rng_motion)),
@@ -99,6 +108,7 @@ def spawn_crowd(
     crowd.entity = esper.create_entity(
         crowd.seat,
         crowd.placement,
+        crowd.body,
         crowd.team,
         crowd.appearance,
         crowd.motion,
@@ -116,14 +126,19 @@ def spawn_crowd(
         _add_baked(crowd, bank, figure, rng_motion)
     else:
         _add_streams(crowd, bank, figure, plans, offsets or spec.offsets, rng_motion)
+    types = crowd.pool.twins.types if crowd.pool is not None and len(crowd.pool.twins) else ()
+    adult = SPECTATOR_HEIGHT / figure.height
+    crowd.physique = measure(character.skeleton, figure, types, bank, library, adult)
+    esper.add_component(crowd.entity, crowd.physique)
     for name, start, stop in plan.sections:
         esper.create_entity(Section(name, crowd.entity, start, stop))
     return crowd
 
 
-def _place(plan: SeatPlan, figure: Figure, rng: np.random.Generator) -> Placement:
+def _place(
+    plan: SeatPlan, figure: Figure, size: NDArray[np.float32], rng: np.random.Generator
+) -> Placement:
     count = plan.count
-    size = rng.normal(1.0, 0.045, count).clip(0.88, 1.12)
     turn = rng.normal(0.0, 0.12, count).clip(-0.35, 0.35)
     return Placement(
         position=plan.position,
@@ -149,17 +164,29 @@ def _add_streams(
         markers=figure.joints,
         uniques=spec.uniques,
         slots=spec.slots,
+        bodies=make_body_types(crowd.character.skeleton, figure),
     )
+    ways_need = 0 if plans is None else sum(plan.streams(spec.history) for plan in plans)
+    motions = len(crowd.library.names)
+    own = 0
+    if spec.children + spec.old > 0 and pool.twins.types:
+        own = affordable_streams(spec.streams, motions, ways_need, len(pool.twins.types))
     parts: list[Any] = [pool]
     kept = np.zeros(spec.streams, np.bool_)
     if plans is None:
-        streams = start_streams(pool, crowd.library, spec.streams, rng)
+        streams = start_streams(pool, crowd.library, own or spec.streams, rng)
     else:
-        spare = sum(plan.streams(spec.history) for plan in plans)
-        streams = start_streams(pool, without_ways(crowd.library), spec.streams - spare, rng)
+        many = own or spec.streams - ways_need
+        streams = start_streams(pool, without_ways(crowd.library), many, rng)
         ways, streams = start_ways(pool, crowd.library, plans, streams, spec.history)
         kept[np.concatenate(ways.rows)] = True
         parts.append(ways)
+    if own:
+        whole = np.zeros(motions, np.bool_)
+        whole[motions if plans is None else motions - len(plans) :] = True
+        streams = start_twins(pool, streams, whole)
+        twins = pool.twins.table[1:, kept]
+        kept[twins[twins >= 0]] = True
     if spec.rest_idle:
         parts.append(StreamNeeds(spec.streams, always=kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
@@ -170,7 +197,7 @@ def _add_streams(
     count = len(crowd)
     parts_of_body = 1 + MAX_LAYERS
     anim = AgentAnimID.allocate(parts_of_body, count, pool.store.bind_row)
-    anim.row[0] = streams.draw_rows(crowd.motion.shown, rng)
+    anim.row[0] = streams.draw_rows(crowd.motion.shown, crowd.body.kind, rng)
     anim.start[0] = anim.target[0] = initial_offsets(offsets, count, spec.history, rng)
     crowd.pool, crowd.anim, crowd.transition = pool, anim, Transition.allocate(parts_of_body, count)
     uniques, slots = UniquePool(pool), SlotPool(pool.store)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import esper
 import numpy as np
+from numpy.typing import NDArray
 
-from ..components import BakedAnim, MotionState
+from ..components import BakedAnim, Body, MotionState
 from ..engine.clock import Clock
 from ..engine.crowd.motions import MotionLibrary, MotionStreams
 from ..engine.crowd.ways import Ways
@@ -42,7 +43,8 @@ class TransitionSystem(esper.Processor):
             streams = esper.try_component(entity, MotionStreams)
             if state is not None and streams is not None:
                 ways = esper.try_component(entity, Ways)
-                self._want(state, ladder, streams, ways, clock.pose_tick)
+                kind = esper.component_for_entity(entity, Body).kind
+                self._want(state, ladder, streams, kind, ways, clock.pose_tick)
             stage = esper.try_component(entity, OverlayStage)
             if stage is not None:
                 stage.step(clock.pose_tick, self._rng)
@@ -55,6 +57,7 @@ class TransitionSystem(esper.Processor):
         state: MotionState,
         ladder: BlendLadder,
         streams: MotionStreams,
+        kind: NDArray[np.uint8],
         ways: Ways | None,
         tick: int,
     ) -> None:
@@ -68,7 +71,7 @@ class TransitionSystem(esper.Processor):
         state.shown[agents[asked]] = state.wanted[agents[asked]]
         agents = agents[~asked]
         motion, blend = state.wanted[agents], state.blend[agents]
-        row = streams.draw_rows(motion, self._rng)
+        row = streams.draw_rows(motion, kind[agents], self._rng)
         offset = np.full(len(agents), np.nan, np.float32)
         resting = np.flatnonzero(ladder.transition.duration[BODY, agents] == 0)
         if ways is not None and len(resting):
@@ -76,6 +79,7 @@ class TransitionSystem(esper.Processor):
             ways.enter(ladder.pool, state, agents[resting], *way, tick, self._rng)
             for column, changed in zip((motion, row, offset, blend), way, strict=True):
                 column[resting] = changed
+            row = streams.twins.resolve(row, kind[agents])
         state.shown[agents] = motion
         ladder.ask(BODY, agents, row, offset, blend)
 

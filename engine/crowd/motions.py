@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..animation.clip import Clip
 from ..streams.pool import StreamPool
+from ..streams.twins import Twins
 
 SEAM = 0.6
 """Radians that a joint may turn at the seam of a loop."""
@@ -154,16 +155,27 @@ class MotionStreams:
     first, count
         (K,) int32: motion k is played by the stream rows ``first[k]`` to
         ``first[k] + count[k] - 1``.
+    twins
+        Of the pool: who shows those streams on other body types.
+    shared
+        (K,) int32 how many of a motion's streams, from the first on, are shown on all body types;
+        None where there are no others.
     """
 
     first: NDArray[np.int32]
     count: NDArray[np.int32]
+    twins: Twins
+    shared: NDArray[np.int32] | None = None
 
-    def draw_rows(self, motion: NDArray[np.int16], rng: np.random.Generator) -> NDArray[np.int32]:
-        """A stream row for each wanted motion."""
-        pick = (rng.random(len(motion)) * self.count[motion]).astype(np.int32)
-        rows: NDArray[np.int32] = self.first[motion] + pick
-        return rows
+    def draw_rows(
+        self, motion: NDArray[np.int16], kind: NDArray[np.uint8], rng: np.random.Generator
+    ) -> NDArray[np.int32]:
+        """A stream row for each wanted motion (n,), on the body types (n,) of who wants it."""
+        count = self.count[motion]
+        if self.shared is not None:
+            count = np.where(kind > 0, self.shared[motion], count)
+        pick = (rng.random(len(motion)) * count).astype(np.int32)
+        return self.twins.resolve(self.first[motion] + pick, kind)
 
 
 def start_streams(
@@ -204,7 +216,7 @@ def start_streams(
         clip = int(library.clips[motion])
         time = rng.uniform(0.0, float(pool.bank.duration[clip]))
         rows.append(pool.add(clip, time=time, speed=rng.uniform(0.92, 1.08)).row)
-    return MotionStreams(first=first + np.int32(rows[0]), count=wanted)
+    return MotionStreams(first + np.int32(rows[0]), wanted, pool.twins)
 
 
 def _closes(clip: Clip) -> bool:

@@ -46,6 +46,8 @@ _REAL = {
     "occupancy": (0.0, 1.0),
     "neutrals": (0.0, 1.0),
     "away_share": (0.0, 1.0),
+    "children": (0.0, 1.0),
+    "old": (0.0, 1.0),
 }
 
 
@@ -106,6 +108,8 @@ class CrowdSpec:
     sides: int = field(default=1, metadata=_help("supporting sides, 1 or 2"))
     neutrals: float = field(default=0.03, metadata=_help("share that supports nobody"))
     away_share: float = field(default=0.05, metadata=_help("share of the away block, with 2 sides"))
+    children: float = field(default=0.06, metadata=_help("share of children"))
+    old: float = field(default=0.1, metadata=_help("share of old people"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
@@ -129,6 +133,8 @@ class CrowdSpec:
                 f"rows * columns must be at most {MOST_SEATS:,}, "
                 f"not {self.rows} * {self.columns} = {self.rows * self.columns:,}"
             )
+        if self.children + self.old > 1.0 + 1e-9:
+            raise ValueError(f"children + old must be at most 1, not {self.children} + {self.old}")
         if self.sides == 2 and self.neutrals + self.away_share > 1.0 + 1e-9:
             raise ValueError(
                 "neutrals + away_share must be at most 1 with 2 sides, "

@@ -162,7 +162,7 @@ def find_ways(
     """
     up = next((clip for clip in clips if _UP.match(clip.name) and not clip.looping), None)
     down = next((clip for clip in clips if _DOWN.match(clip.name) and not clip.looping), None)
-    seated = _seated(library.names)
+    seated = seated_motions(library.names)
     if up is None or down is None or seated.all() or not seated.any():
         return None
     if min(up.duration, down.duration) * POSE_RATE < 2 * LEAD:
@@ -224,7 +224,7 @@ def start_ways(
         made = [pool.add(int(clip), time=float(time), speed=plan.speed).row for time in times]
         first.append(made[0])
         count.append(number)
-    seated = _seated(library.names)
+    seated = seated_motions(library.names)
     up, down = len(library.names) - 2, len(library.names) - 1
     begins, ends = seated.copy(), seated.copy()
     begins[[up, down]], ends[[up, down]] = (True, False), (False, True)
@@ -233,6 +233,7 @@ def start_ways(
     places = MotionStreams(
         first=np.append(streams.first, np.array(first, np.int32)),
         count=np.append(streams.count, np.array(count, np.int32)),
+        twins=pool.twins,
     )
     return ways, places
 
@@ -246,5 +247,6 @@ def _way(clip: Clip, speed: float) -> Way:
     return Way(clip, loop, speed, float(begin), float(begin + clip.duration / loop.duration))
 
 
-def _seated(names: Sequence[str]) -> NDArray[np.bool_]:
+def seated_motions(names: Sequence[str]) -> NDArray[np.bool_]:
+    """(K,) which motions are those of people who sit, by their names."""
     return np.array([bool(_SEATED.match(name)) for name in names], np.bool_)

@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...components import Appearance, Placement
+from ...components import Appearance, Body, Placement
+from ..crowd.physique import Physique
 from ..gl.program import Program
 from ..gl.texture import Texture2D
 from ..gl.texture_format import TextureFormat
@@ -34,27 +35,36 @@ class AgentTables:
     def __init__(self, agents: int) -> None:
         self._rows = table_rows(agents)
         self._agents = agents
-        self._versions = [-1, -1]
-        self._place = self._texture(2, TextureFormat.RGBA32F)
+        self._versions = [(-1, -1), (-1, -1)]
+        self._place = self._texture(3, TextureFormat.RGBA32F)
         self._looks = self._texture(5, TextureFormat.SRGB8_ALPHA8)
 
-    def update_place(self, placement: Placement) -> int:
-        """Copy places if they changed; bytes copied."""
-        if self._versions[0] == placement.version:
+    def update_place(
+        self, placement: Placement, body: Body | None = None, physique: Physique | None = None
+    ) -> int:
+        """Copy places and builds if they changed; bytes copied."""
+        versions = (placement.version, -1 if body is None else body.version)
+        if self._versions[0] == versions:
             return 0
-        self._versions[0] = placement.version
-        table = self._empty(8, np.float32)
+        self._versions[0] = versions
+        table = self._empty(12, np.float32)
         table[: self._agents, :3] = placement.position.T
         table[: self._agents, 3] = placement.scale
         table[: self._agents, 4] = np.sin(placement.yaw)
         table[: self._agents, 5] = np.cos(placement.yaw)
+        table[: self._agents, 10] = 1.0
+        if body is not None and physique is not None:
+            table[: self._agents, 8] = body.girth
+            table[: self._agents, 9] = body.head
+            table[: self._agents, 10] = physique.legs[body.kind]
         return self._write(self._place, table)
 
     def update_looks(self, appearance: Appearance) -> int:
         """Copy colours if they changed; bytes copied."""
-        if self._versions[1] == appearance.version:
+        versions = (appearance.version, -1)
+        if self._versions[1] == versions:
             return 0
-        self._versions[1] = appearance.version
+        self._versions[1] = versions
         table = self._empty(20, np.uint8)
         parts = ("skin", "hair", "shirt", "trousers", "shoes")
         for number, part in enumerate(parts):

@@ -13,10 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assets.character import Material, SkinnedMesh
+from ..crowd.morphs import MorphWeights
 
 SURFACES = ("skin", "hair", "shirt", "trousers", "shoes")
 """Materials of these names take the agent's colour; the order is that of the looks table."""
 NO_SURFACE = 255
+
+NORMALISED = ("color", "morph")
+"""Fields of `VERTEX` whose integers mean 0 to 1."""
 
 VERTEX = np.dtype(
     [
@@ -27,7 +31,8 @@ VERTEX = np.dtype(
         ("joints", np.uint16, 4),
         ("color", np.uint8, 4),
         ("surface", np.uint8),
-        ("padding", np.uint8, 3),
+        ("morph", np.uint8, 2),
+        ("padding", np.uint8, 1),
     ]
 )
 
@@ -54,8 +59,20 @@ class Batch:
     double_sided: bool
 
 
-def make_batches(meshes: Sequence[SkinnedMesh], materials: Sequence[Material]) -> tuple[Batch, ...]:
-    """Join meshes into as few batches as their pictures and sidedness allow."""
+def make_batches(
+    meshes: Sequence[SkinnedMesh],
+    materials: Sequence[Material],
+    morphs: MorphWeights | None = None,
+) -> tuple[Batch, ...]:
+    """Join meshes into as few batches as their pictures and sidedness allow.
+
+    Parameters
+    ----------
+    meshes, materials
+        Of a character.
+    morphs
+        How their vertices take part in the morphs; not at all if None.
+    """
     groups: dict[tuple[int, bool], list[SkinnedMesh]] = {}
     for mesh in meshes:
         material = materials[mesh.material]
@@ -63,7 +80,9 @@ def make_batches(meshes: Sequence[SkinnedMesh], materials: Sequence[Material]) -
         groups.setdefault(key, []).append(mesh)
     return tuple(
         Batch(
-            vertices=np.concatenate([_vertices(mesh, materials[mesh.material]) for mesh in group]),
+            vertices=np.concatenate(
+                [_vertices(mesh, materials[mesh.material], morphs) for mesh in group]
+            ),
             indices=_indices(group),
             image=None if picture < 0 else materials[picture].image,
             double_sided=double_sided,
@@ -90,10 +109,14 @@ def split_batch(batch: Batch, joints: NDArray[np.bool_]) -> tuple[Batch, Batch]:
     return replace(batch, indices=apart), replace(batch, indices=with_them)
 
 
-def _vertices(mesh: SkinnedMesh, material: Material) -> NDArray[np.void]:
+def _vertices(
+    mesh: SkinnedMesh, material: Material, morphs: MorphWeights | None
+) -> NDArray[np.void]:
     out = np.zeros(len(mesh.positions), VERTEX)
     out["position"], out["normal"], out["uv"] = mesh.positions, mesh.normals, mesh.uvs
     out["weights"], out["joints"] = mesh.weights, mesh.joints
+    if morphs is not None:
+        out["morph"] = np.round(255.0 * morphs.of(mesh)).astype(np.uint8)
     varies = material.name in SURFACES
     out["surface"] = SURFACES.index(material.name) if varies else NO_SURFACE
     base = np.ones(4) if varies else np.array(material.base_color, np.float64)

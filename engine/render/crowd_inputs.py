@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...components import AgentAnimID, Appearance, BakedAnim, Detail, Placement, Transition
+from ...components import AgentAnimID, Appearance, BakedAnim, Body, Detail, Placement, Transition
+from ..crowd.morphs import MorphWeights
+from ..crowd.physique import Physique
 from ..gl.program import Program
 from ..gl.source import Defines
 from ..overrides.override_set import OverrideSet
@@ -34,6 +36,8 @@ class CrowdColumns:
     poses: tuple[StreamPool, AgentAnimID, Transition] | tuple[BakedPoses, BakedAnim]
     overlays: OverlayStage | None = None
     overrides: OverrideSet | None = None
+    body: Body | None = None
+    physique: Physique | None = None
 
 
 class CrowdInputs:
@@ -69,6 +73,12 @@ class CrowdInputs:
             self.defines["OVERLAYS"] = 1
         overrides = columns.overrides
         self._overrides = None if overrides is None else OverrideTables(overrides)
+
+    @property
+    def morphs(self) -> MorphWeights | None:
+        """How meshes take part in the bind-pose morphs."""
+        physique = self._columns.physique
+        return None if physique is None else physique.morphs
 
     @property
     def revision(self) -> int:
@@ -115,7 +125,7 @@ class CrowdInputs:
         """Copy what the simulation changed; bytes copied."""
         columns = self._columns
         copied = self._poses.update(tick)
-        copied += self._agents.update_place(columns.placement)
+        copied += self._agents.update_place(columns.placement, columns.body, columns.physique)
         copied += self._agents.update_looks(columns.appearance)
         if self._overrides is not None:
             copied += self._overrides.update()
@@ -142,11 +152,22 @@ class CrowdInputs:
         """
         self._agents.bind(program)
         self._motion.bind(program, tick, alpha)
+        self._bind_physique(program, markers=markers)
         self._poses.bind(program, markers=markers)
         if self._overlays is not None:
             self._overlays.bind(program, markers=markers)
         if self._overrides is not None and not markers:
             self._overrides.bind(program)
+
+    def _bind_physique(self, program: Program, *, markers: bool) -> None:
+        physique = self._columns.physique
+        seats = None if physique is None else physique.seats
+        none = (0.0, 0.0, 0.0)
+        program["seat"] = (seats.sitting, seats.standing, seats.seat) if seats else none
+        if not markers:
+            program["head_centre"] = physique.morphs.head_centre if physique else none
+            program["hips_joint"] = physique.hips if physique else 0
+            program["hips_bind"] = physique.hips_bind if physique else none
 
     def delete(self) -> None:
         """Delete everything on the GPU."""

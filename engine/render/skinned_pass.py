@@ -14,7 +14,7 @@ from ..gl.texture import Texture2D
 from ..gl.texture_format import TextureFormat
 from ..gl.vertex_array import Primitive, VertexArray
 from ..gl.vertex_input import Attribute, VertexInput
-from .body_mesh import VERTEX, Batch, make_batches, split_batch
+from .body_mesh import NORMALISED, VERTEX, Batch, make_batches, split_batch
 from .crowd_inputs import CrowdInputs
 from .frame import Frame
 from .state import opaque
@@ -75,7 +75,9 @@ class SkinnedPass:
         self._levels = tuple(
             tuple(
                 self._upload(part, self.lists[level], switches)
-                for batch in make_batches(meshes[min(level, len(meshes) - 1)], character.materials)
+                for batch in make_batches(
+                    meshes[min(level, len(meshes) - 1)], character.materials, inputs.morphs
+                )
                 for part, switches in _parts(batch, inputs.overridden)
             )
             for level in range(levels)
@@ -114,7 +116,7 @@ class SkinnedPass:
         indices = Buffer(batch.indices)
         vertex_array = VertexArray(
             program,
-            [VertexInput(vertices, VERTEX, normalised=("color",)), agents.input()],
+            [VertexInput(vertices, VERTEX, normalised=NORMALISED), agents.input()],
             indices,
         )
         return _Drawn(program, vertex_array, (vertices, indices), image, batch.double_sided)

@@ -166,6 +166,11 @@ class StreamEvents:
         """Stream rows (S,) passed nothing in pose tick `tick`."""
         self.planes[:, tick % self.planes.shape[1], rows] = 0
 
+    def copy(self, tick: int, rows: NDArray[np.int64], twins: NDArray[np.int64]) -> None:
+        """Twins (S,) of stream rows (S,) passed in pose tick `tick` what those did."""
+        slot = tick % self.planes.shape[1]
+        self.planes[:, slot, twins] = self.planes[:, slot, rows]
+
     def _repeat(
         self, slot: int, row: int, bits: NDArray[np.uint64], counts: NDArray[np.int64]
     ) -> None:

@@ -46,7 +46,7 @@ class OverlayStage:
         layer: int,
         agents: NDArray[np.int64],
         mask: int,
-        row: int,
+        row: NDArray[np.int32] | int,
         offset: NDArray[np.float32] | float,
         weight: NDArray[np.float32] | float,
         duration: NDArray[np.float32] | float,

@@ -11,11 +11,12 @@ A stream that stops keeps its head: its agents hold. Running again, a seek or an
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..animation.body_type import BodyType
 from ..animation.clip_bank import ClipBank
 from ..animation.controllers import Controller
 from ..animation.kinematics import Kinematics
@@ -25,8 +26,13 @@ from .access import ControllerAccess, Stream
 from .clip_events import ClipRun, StreamEvents
 from .markers import Markers
 from .store import PoseStore
+from .twins import Twins
 
 __all__ = ["POSE_RATE", "Stream", "StreamPool", "bind_positions"]
+
+_TWIN_COLUMNS = (
+    *("clip", "time", "speed", "looping", "history", "history_goal", "running", "alive"),
+)
 
 POSE_RATE = 30.0
 """Pose ticks a second."""
@@ -49,11 +55,15 @@ class StreamPool(ControllerAccess):
         (K,) joints whose positions the store keeps for the farthest level of detail.
     uniques, slots
         How many uniques and transition slots the store has room for.
+    bodies
+        Body types beside the skeleton's own; see `add_twin`.
 
     Attributes
     ----------
     markers
         The joints whose positions are kept.
+    twins
+        Which streams show others on another body type.
     before_cut
         Called with a stream's row and whether it is removed, before its poses are lost.
     head
@@ -98,6 +108,7 @@ class StreamPool(ControllerAccess):
         "speed",
         "store",
         "time",
+        "twins",
         "valid",
     )
 
@@ -111,6 +122,7 @@ class StreamPool(ControllerAccess):
         markers: NDArray[np.int64] | None = None,
         uniques: int = 0,
         slots: int = 0,
+        bodies: Sequence[BodyType] = (),
     ) -> None:
         if not 1 <= capacity <= 16384:
             raise ValueError(f"capacity is {capacity}, expected 1 to 16384 streams")
@@ -127,6 +139,7 @@ class StreamPool(ControllerAccess):
             markers=len(joints),
         )
         self.store.write_static(0, np.eye(3, 4, dtype=np.float32), self.markers.bind)
+        self.twins = Twins(skeleton, bodies, capacity)
         self.before_cut: list[Callable[[int, bool], None]] = []
         self._kinematics: Kinematics | None = None
         self._pending = np.zeros(0, np.int64)
@@ -179,10 +192,7 @@ class StreamPool(ControllerAccess):
         _check_finite(time=time, speed=speed)
         if history is not None:
             self._check_history(history)
-        free = np.flatnonzero(~self.alive)
-        if not len(free):
-            raise ValueError(f"all {len(self.alive)} stream rows are in use; remove a stream first")
-        row = int(free[0])
+        row = self._free_row()
         self._assign(row, motion, time)
         self.alive[row] = self.running[row] = True
         self.generation[row] += 1
@@ -194,27 +204,63 @@ class StreamPool(ControllerAccess):
         self._cut(row)
         return Stream(row, int(self.generation[row]))
 
-    def remove(self, stream: Stream) -> None:
-        """Give a stream's row back; agents still on it are moved to the bind pose."""
-        row = self.row(stream)
-        self._tell(row, removed=True)
-        self.alive[row] = self.running[row] = False
-        self._plan.discard(row)
+    def add_twin(self, stream: Stream, body: str) -> Stream:
+        """Show a stream on another body type too, on a row of its own.
+
+        A twin follows its stream in everything: time, controller, parameters, cuts, stop and run.
+
+        Parameters
+        ----------
+        stream
+            A stream, or a twin of it.
+        body
+            Name of one of the pool's body types.
+
+        Raises
+        ------
+        ValueError
+            For an unknown type, one that the stream is shown on already, or when no row is free.
+        """
+        base = self._own_row(stream)
+        names = [kind.name for kind in self.twins.types]
+        if body not in names:
+            known = ", ".join(names) or "none"
+            raise ValueError(f"there is no body type '{body}'; known: {known}")
+        kind = 1 + names.index(body)
+        if self.twins.table[kind, base] >= 0:
+            raise ValueError(f"stream {base} is shown on body type '{body}' already")
+        row = self._free_row()
+        for name in _TWIN_COLUMNS:
+            column = getattr(self, name)
+            column[row] = column[base]
+        self.generation[row] += 1
+        self.twins.add(row, base, kind)
         self._cut(row)
+        return Stream(row, int(self.generation[row]))
+
+    def remove(self, stream: Stream) -> None:
+        """Give a stream's row back, and its twins'; agents still there get the bind pose."""
+        row = self.row(stream)
+        for member in reversed(self.twins.family(row)):
+            self._tell(member, removed=True)
+            self.alive[member] = self.running[member] = False
+            self._cut(member)
+            self.twins.forget(member)
+        self._plan.discard(row)
 
     def stop(self, stream: Stream) -> None:
         """Stop evaluating a stream; its head freezes and its agents hold."""
-        row = self.row(stream)
-        self.running[row] = False
-        self._drop_pending(row)
+        for row in self.twins.family(self.row(stream)):
+            self.running[row] = False
+            self._drop_pending(row)
         self.store.mark_streams()
 
     def run(self, stream: Stream) -> None:
         """Run a stopped stream again: a cut, after which it goes on from its controller's time."""
-        row = self.row(stream)
-        if not self.running[row]:
-            self.running[row] = True
-            self._cut(row)
+        for row in self.twins.family(self._own_row(stream)):
+            if not self.running[row]:
+                self.running[row] = True
+                self._cut(row)
 
     def seek(self, stream: Stream, time: float) -> None:
         """Set the controller's time in seconds: a cut.
@@ -223,19 +269,19 @@ class StreamPool(ControllerAccess):
         `time` seconds after where it begins. Parameters keep their values.
         """
         _check_finite(time=time)
-        row = self.row(stream)
+        row = self._own_row(stream)
         self.time[row] = time
         if row in self._plan:
             self._plan.seek(row, time)
-        self._cut(row)
+        self._cut_family(row)
 
     def play(self, stream: Stream, motion: int | str | Controller, *, time: float = 0.0) -> None:
         """Put another clip or tree on a stream: a cut. Parameters begin with the tree's values."""
-        row = self.row(stream)
+        row = self._own_row(stream)
         _check_finite(time=time)
         _check_motion(motion, self.bank)
         self._assign(row, motion, time)
-        self._cut(row)
+        self._cut_family(row)
 
     def set_history(self, stream: Stream, history: int) -> None:
         """Let a running stream keep more or fewer poses from now on.
@@ -277,10 +323,9 @@ class StreamPool(ControllerAccess):
             Pose tick, one more than at the last call.
         """
         self._pending = self._pending[:0]
-        rows = np.flatnonzero(self.running)
+        rows = np.flatnonzero(self.running & (self.twins.base < 0))
         if not len(rows):
             return
-        workspace = self._workspace(len(rows))
         # Streams that play a clip first: they are sampled straight into what kinematics reads.
         tree = self.clip[rows] < 0
         clips = len(rows) - int(np.count_nonzero(tree))
@@ -292,6 +337,9 @@ class StreamPool(ControllerAccess):
         seconds = np.where(advanced, self.speed[rows] / POSE_RATE, 0.0)
         before = self.time[rows]
         self.time[rows] += seconds
+        twins, mirrored = self.twins.following(rows)
+        twins, mirrored = twins[self.running[twins]], mirrored[self.running[twins]]
+        workspace = self._workspace(len(rows) + len(twins))
         pose = workspace.mixed
         if clips:
             plain = rows[:clips]
@@ -306,10 +354,17 @@ class StreamPool(ControllerAccess):
             )
         if clips < len(rows):
             self.clip_events.clear(tick, rows[clips:])
-            self._plan.evaluate(rows[clips:], seconds[clips:], pose[clips:])
-        whole = in_order and len(rows) == len(self.running)
+            self._plan.evaluate(rows[clips:], seconds[clips:], pose[clips : len(rows)])
+        if len(twins):
+            pose[len(rows) :] = pose[mirrored]
+            self.twins.fit_poses(pose[len(rows) :], twins)
+            self._mirror(tick, twins)
+            rows = np.concatenate([rows, twins])
+        whole = len(rows) == len(self.running) and bool((np.diff(rows) > 0).all())
         target = self.store.ring[self.store.slice_of(tick)]
         workspace.evaluate(pose, target, None if whole else rows)
+        if len(twins):
+            self.twins.fit_palettes(target, twins)
         if len(self.markers.joints):
             markers = workspace.joint_positions(self.markers.joints)
             self.store.ring_markers[self.store.slice_of(tick), rows, :, :3] = markers
@@ -324,9 +379,36 @@ class StreamPool(ControllerAccess):
         if len(rows):
             self.head[rows] = tick
             self.valid[rows] = np.minimum(self.valid[rows] + 1, self.history[rows])
-            self.store.ring_phase[self.store.slice_of(tick), rows] = self.phase(rows)
+            self.store.ring_phase[self.store.slice_of(tick), rows] = self.phase(
+                self._mirrored(rows)
+            )
             self.store.mark_slice(tick)
             self.store.mark_streams()
+
+    def _mirror(self, tick: int, twins: NDArray[np.int64]) -> None:
+        """Let twins have their streams' time and events."""
+        base = self.twins.base[twins]
+        self.time[twins] = self.time[base]
+        self.clip[twins], self.looping[twins] = self.clip[base], self.looping[base]
+        self.speed[twins] = self.speed[base]
+        self.clip_events.copy(tick, base, twins)
+
+    def _mirrored(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Rows, and instead of twins those of their streams."""
+        base = self.twins.base[rows]
+        return np.where(base >= 0, base, rows)
+
+    def _own_row(self, stream: Stream) -> int:
+        """Row of a stream, or of what its handle is the twin of."""
+        row = self.row(stream)
+        base = int(self.twins.base[row])
+        return row if base < 0 else base
+
+    def _free_row(self) -> int:
+        free = np.flatnonzero(~self.alive)
+        if not len(free):
+            raise ValueError(f"all {len(self.alive)} stream rows are in use; remove a stream first")
+        return int(free[0])
 
     def _workspace(self, streams: int) -> Kinematics:
         if self._kinematics is None or self._kinematics.streams != streams:
@@ -374,6 +456,10 @@ class StreamPool(ControllerAccess):
         self.valid[row] = 0
         self._drop_pending(row)
         self.store.mark_streams()
+
+    def _cut_family(self, row: int) -> None:
+        for member in self.twins.family(row):
+            self._cut(member)
 
     def _drop_pending(self, row: int) -> None:
         self._pending = self._pending[self._pending != row]

@@ -94,6 +94,9 @@ class StreamNeeds:
         shown = np.bincount(np.minimum(anim.row, rows).ravel(), minlength=rows + 1)[:rows] > 0
         fading = transition.row[transition.duration > 0]
         shown[fading[fading < rows]] = True
+        # A stream rests only with all its twins.
+        twins = np.flatnonzero(shown & (pool.twins.base >= 0))
+        shown[pool.twins.base[twins]] = True
         return shown
 
     def _spread(

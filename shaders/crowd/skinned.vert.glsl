@@ -5,6 +5,7 @@
 #include "lib/pose.glsl"
 #include "lib/posture.glsl"
 #include "lib/skin.glsl"
+#include "lib/morph.glsl"
 
 in vec3 position;
 in vec3 normal;
@@ -12,6 +13,7 @@ in vec2 uv;
 in vec4 color;                 // sRGB
 in uvec4 joints;
 in vec4 weights;
+in vec2 morph;                 // how much the vertex takes part in girth and head
 in uint surface;               // 0 to 4: the agent's colour; 255: the material's
 in uint agent;
 
@@ -26,9 +28,12 @@ flat out vec3 f_tint;
 void main()
 {
     int id = int(agent);
-    mat3x4 rows = skin_matrix(fetch_posture(id), joints, weights);
-    vec3 model = transformed(rows, position);
+    Posture posture = fetch_posture(id);
+    mat3x4 rows = skin_matrix(posture, joints, weights);
     Body body = fetch_body(id);
+    vec3 model = transformed(rows, morphed(body, position, normal, morph));
+    if (seat.z > 0.0)
+        body = seated(body, hips_height(posture));
     f_place = to_stadium(body, model);
     f_normal = turned(body, normal * mat3(rows));
     f_uv = uv;

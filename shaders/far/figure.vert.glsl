@@ -80,6 +80,7 @@ void main()
     }
 #endif
 
+    body = seated(body, joint[HIPS].y);
     mat3 rotation = mat3(view);
     vec3 hips = to_stadium(body, joint[HIPS]);
     vec4 centre = view * vec4(hips, 1.0);

@@ -1,12 +1,15 @@
 // One agent's row of the crowd's tables, 256 agents a texture row.
-// Provides Body, fetch_body(), to_stadium(), to_model(), agent_colour().
-uniform sampler2D placement;   // 2 texels: x y z scale; sin yaw, cos yaw, unused, unused
+// Provides Body, fetch_body(), seated(), to_stadium(), to_model(), agent_colour().
+uniform sampler2D placement;   // 3 texels: x y z scale; sin and cos of the yaw; girth, head, legs
+uniform vec3 seat;             // hips sitting and standing, model space; metres of the seat, or 0
 uniform sampler2D looks;       // 5 texels, sRGB: skin hair shirt trousers shoes
 
 struct Body {
     vec3 place;
     float scale;
     vec2 turn;                 // sin and cos of the yaw
+    vec2 morph;                // metres of girth, growth of the head
+    float legs;                // height of the hips of its body type, as a factor
 };
 
 ivec2 agent_texel(int agent, int texels, int texel)
@@ -16,9 +19,22 @@ ivec2 agent_texel(int agent, int texels, int texel)
 
 Body fetch_body(int agent)
 {
-    vec4 first = texelFetch(placement, agent_texel(agent, 2, 0), 0);
-    vec4 second = texelFetch(placement, agent_texel(agent, 2, 1), 0);
-    return Body(first.xyz, first.w, second.xy);
+    vec4 first = texelFetch(placement, agent_texel(agent, 3, 0), 0);
+    vec4 second = texelFetch(placement, agent_texel(agent, 3, 1), 0);
+    vec4 third = texelFetch(placement, agent_texel(agent, 3, 2), 0);
+    return Body(first.xyz, first.w, second.xy, third.xy, third.z);
+}
+
+// Moves a body up onto its seat, the more the lower its hips are; the rule of
+// engine/crowd/physique.py. `hips` is their height in model space.
+Body seated(Body body, float hips)
+{
+    if (seat.z > 0.0) {
+        vec2 range = seat.xy * body.legs;
+        float share = smoothstep(0.0, 1.0, (range.y - hips) / (range.y - range.x));
+        body.place.y += share * (seat.z - body.scale * range.x);
+    }
+    return body;
 }
 
 // Yaw 0 faces +Z; positive turns about +Y.

@@ -1,5 +1,5 @@
 // What an agent's joints do: the palette of any joint, with all that is mixed into it.
-// Provides Posture, fetch_posture(), joint_rows(); needs agent.glsl and pose.glsl.
+// Provides Posture, fetch_posture(), hips_height(), joint_rows(); needs agent.glsl and pose.glsl.
 #include "lib/affine.glsl"
 #ifdef OVERLAYS
 #include "lib/overlay.glsl"
@@ -87,6 +87,18 @@ mat3x4 layered_rows(Posture posture, int joint)
     return rows;
 }
 #endif
+
+uniform int hips_joint;
+uniform vec3 hips_bind;            // its place in the bind pose
+
+// Height of the hips in model space. Only one row of their palette is fetched.
+float hips_height(Posture posture)
+{
+    vec4 row = vec4(0.0);
+    for (int s = 0; s < posture.count; ++s)
+        row += posture.sources[s].share * pose_texel(posture.sources[s], 3 * hips_joint + 1);
+    return dot(row, vec4(hips_bind, 1.0));
+}
 
 // What animation makes of a joint.
 mat3x4 animated_rows(Posture posture, int joint)

@@ -138,7 +138,7 @@ def test_a_baked_agent_changes_clip_at_once(simulate: MakeSimulation) -> None:
 def test_a_character_without_clips_stands_still(
     simulate: MakeSimulation, factories: object
 ) -> None:
-    spec = simulate().spec
+    spec = simulate(children=0.0, old=0.0).spec
     still = factories.make_character(())  # type: ignore[attr-defined]
     simulation = Simulation(spec, still)
     simulation.send(Goal(0))

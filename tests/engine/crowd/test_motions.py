@@ -160,7 +160,9 @@ def test_every_motion_is_playable_with_any_number_of_streams(
     assert (shared.count >= 1).all()
     assert (shared.first >= 0).all()
     assert (shared.first + shared.count <= streams).all()
-    rows = shared.draw_rows(np.repeat(np.arange(motions, dtype=np.int16), 50), _rng())
+    rows = shared.draw_rows(
+        np.repeat(np.arange(motions, dtype=np.int16), 50), np.zeros(50 * motions, np.uint8), _rng()
+    )
     assert pool.alive[rows].all()
     if streams >= motions:
         assert shared.count.sum() == streams
@@ -201,6 +203,6 @@ def test_motions_that_are_wanted_more_get_more_streams(factories: ModuleType) ->
 def test_all_streams_of_a_motion_are_drawn(factories: ModuleType) -> None:
     _, library, shared = _start(factories, 64)
     motion = library.names.index("sit_idle")
-    rows = shared.draw_rows(np.full(2000, motion, np.int16), _rng())
+    rows = shared.draw_rows(np.full(2000, motion, np.int16), np.zeros(2000, np.uint8), _rng())
     first, count = int(shared.first[motion]), int(shared.count[motion])
     assert sorted(set(rows.tolist())) == list(range(first, first + count))

@@ -35,6 +35,8 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "sides": st.integers(1, 2),
     "neutrals": st.floats(0.0, 0.5),
     "away_share": st.floats(0.0, 0.5),
+    "children": st.floats(0.0, 0.5),
+    "old": st.floats(0.0, 0.5),
     "streams": st.integers(1, 256),
     "history": st.integers(2, 254),
     "slots": st.integers(0, 8192),

@@ -74,7 +74,7 @@ class ShaderCrowd:
     ----------
     poses
         What `CrowdColumns.poses` holds.
-    placement, appearance, overlays, overrides
+    placement, appearance, overlays, overrides, body, physique
         Of the agents.
     """
 
@@ -83,12 +83,21 @@ class ShaderCrowd:
     appearance: Appearance
     overlays: Any = None
     overrides: OverrideSet | None = None
+    body: Any = None
+    physique: Any = None
 
     def __post_init__(self) -> None:
         from tifo.engine.render.crowd_inputs import CrowdColumns, CrowdInputs
 
         columns = CrowdColumns(
-            self.placement, self.appearance, Detail(), self.poses, self.overlays, self.overrides
+            self.placement,
+            self.appearance,
+            Detail(),
+            self.poses,
+            self.overlays,
+            self.overrides,
+            self.body,
+            self.physique,
         )
         self.inputs = CrowdInputs(columns)
 
@@ -108,16 +117,16 @@ class ShaderCrowd:
     ) -> NDArray[np.float32]:
         """(K, V, ...) output of the skinning shader for K agents and V vertices."""
         from tifo.engine.gl import Buffer, VertexArray, VertexInput, capture
-        from tifo.engine.render.body_mesh import VERTEX, make_batches
+        from tifo.engine.render.body_mesh import NORMALISED, VERTEX, make_batches
 
-        (batch,) = make_batches((mesh,), (Material("probe"),))
+        (batch,) = make_batches((mesh,), (Material("probe"),), self.inputs.morphs)
         vertices = batch.vertices.copy()
         vertices["surface"] = surface
         program = self.inputs.make_program("crowd/skinned.vert.glsl", feedback=(output,))
         buffer = Buffer(vertices)
         ids = self._ids(agents)
         array = VertexArray(
-            program, [VertexInput(buffer, VERTEX, normalised=("color",)), ids.input()]
+            program, [VertexInput(buffer, VERTEX, normalised=NORMALISED), ids.input()]
         )
         self.inputs.bind(program, tick, alpha, markers=False)
         program["view"] = program["projection"] = np.eye(4, dtype=np.float32)
@@ -169,6 +178,8 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
         appearance: Appearance | None = None,
         overlays: Any = None,
         overrides: OverrideSet | None = None,
+        body: Any = None,
+        physique: Any = None,
     ) -> ShaderCrowd:
         if len(poses) == 3:
             agents = poses[1].row.shape[1]
@@ -180,6 +191,8 @@ def shader_crowd(gl: Any) -> Iterator[Any]:
             paint_agents(agents, np.random.default_rng(0)) if appearance is None else appearance,
             overlays,
             overrides,
+            body,
+            physique,
         )
         made.append(crowd)
         return crowd

@@ -1,0 +1,36 @@
+"""How an agent is built."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(slots=True, eq=False)
+class Body:
+    """Per agent: its body type, and how its bind pose differs from others of the type.
+
+    Attributes
+    ----------
+    kind
+        (N,) uint8 body type: 0 is the character as it is, others are those of the crowd's pool.
+    girth
+        (N,) float32 metres by which the waist's surface lies farther out; negative is slimmer.
+    head
+        (N,) float32 by how much of its size the head is larger; negative is smaller.
+    version
+        Grows with every change.
+    """
+
+    kind: NDArray[np.uint8]
+    girth: NDArray[np.float32]
+    head: NDArray[np.float32]
+    version: int = 0
+
+    @classmethod
+    def allocate(cls, agents: int) -> Body:
+        """Everybody is built like the character."""
+        zeros = np.zeros(agents, np.float32)
+        return cls(np.zeros(agents, np.uint8), zeros, zeros.copy())
