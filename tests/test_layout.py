@@ -40,9 +40,9 @@ TOP_LEVEL = {
 TEXT = {".py", ".glsl", ".md", ".toml", ".yml", ".txt", ".typed", ""}
 
 # A path of one machine, or of the workplace that a file was written in. A part in brackets keeps
-# the pattern from finding itself.
+# the pattern from finding itself. Paths of nodes, below /root, have names in capitals.
 LOCAL_PATH = re.compile(
-    r"/wor[k]/|/roo[t]/|/hom[e]/\w|/tm[p]/\w|/User[s]/\w|[A-Z]:\\+User[s]|file:/[/]/"
+    r"/wor[k]/|/roo[t]/[.a-z]|/hom[e]/\w|/tm[p]/\w|/User[s]/\w|[A-Z]:\\+User[s]|file:/[/]/"
 )
 
 

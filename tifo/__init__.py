@@ -1,7 +1,7 @@
 """tifo fills a stadium with animated spectators.
 
 What a game, a script or a test needs is here; importing it loads neither a window system nor GL.
-`Stage` and `open_window` load them when they are first asked for.
+`Stage`, `open_window` and `WindowInput` load them when they are first asked for.
 """
 
 from __future__ import annotations
@@ -43,7 +43,42 @@ from .systems.spawn import spawn_crowd
 
 if TYPE_CHECKING:
     from .engine.gl.context import open_window
+    from .scripting.easing import Ease, Trans, ease
+    from .scripting.exports import Export, export, exports_of
+    from .scripting.input_events import (
+        InputEvent,
+        InputEventAction,
+        InputEventJoypadButton,
+        InputEventJoypadMotion,
+        InputEventKey,
+        InputEventMouseButton,
+        InputEventMouseMotion,
+    )
+    from .scripting.input_map import InputMap
+    from .scripting.input_state import Input
+    from .scripting.lifecycle import ProcessMode
+    from .scripting.node import Node, is_instance_valid
+    from .scripting.node3d import Node3D
+    from .scripting.packed_scene import PackedScene, load_scene
+    from .scripting.paths import NodePathError
+    from .scripting.reports import FreedError, ScriptError
+    from .scripting.resources import (
+        Resource,
+        add_loader,
+        load,
+        resource_root,
+        save_resource,
+        set_resource_root,
+    )
+    from .scripting.scene_writing import save_scene
+    from .scripting.signals import Signal
     from .scripting.stage import Stage
+    from .scripting.tasks import Task
+    from .scripting.timers import ProcessCallback, SceneTreeTimer, Timer
+    from .scripting.tree import GroupCall, SceneTree
+    from .scripting.tween import Tween, TweenPause
+    from .scripting.vectors import Quaternion, Vector3
+    from .scripting.window_input import WindowInput
     from .systems.render import RenderSystem
 
 __version__ = "0.1.0"
@@ -59,33 +94,66 @@ __all__ = [
     "Clock",
     "Crowd",
     "CrowdSpec",
+    "Ease",
     "Event",
+    "Export",
     "FreeCamera",
+    "FreedError",
     "Goal",
     "GraphicsError",
+    "GroupCall",
     "Humanoid",
+    "Input",
+    "InputEvent",
+    "InputEventAction",
+    "InputEventJoypadButton",
+    "InputEventJoypadMotion",
+    "InputEventKey",
+    "InputEventMouseButton",
+    "InputEventMouseMotion",
+    "InputMap",
     "JointOverride",
     "LookAt",
     "Loop",
     "Material",
     "MotionState",
     "Motions",
+    "Node",
+    "Node3D",
+    "NodePathError",
     "NotHumanoidError",
     "OverriddenJoints",
+    "PackedScene",
     "Placement",
+    "ProcessCallback",
+    "ProcessMode",
+    "Quaternion",
     "RenderSystem",
+    "Resource",
+    "SceneTree",
+    "SceneTreeTimer",
     "Schedule",
+    "ScriptError",
     "Seat",
+    "Signal",
     "Simulation",
     "SkinnedMesh",
     "Stage",
     "Stream",
     "StreamPool",
+    "Task",
     "Team",
     "TifoError",
+    "Timer",
+    "Trans",
+    "Tween",
+    "TweenPause",
     "Unique",
     "UniquePool",
+    "Vector3",
     "View",
+    "WindowInput",
+    "add_loader",
     "add_motions",
     "add_systems",
     "build_seats",
@@ -93,16 +161,26 @@ __all__ = [
     "camera_presets",
     "character_of",
     "controllers",
+    "ease",
+    "export",
+    "exports_of",
     "find_loop",
     "humanoid",
+    "is_instance_valid",
+    "load",
     "load_character",
     "load_motions",
+    "load_scene",
     "look_at",
     "loop_clip",
     "mirror_clip",
     "open_window",
     "pick_seat",
+    "resource_root",
     "retarget",
+    "save_resource",
+    "save_scene",
+    "set_resource_root",
     "spawn_crowd",
     "tick_systems",
     "trim_clip",
@@ -114,12 +192,38 @@ _DRAWING = {
     "Stage": "scripting.stage",
     "open_window": "engine.gl.context",
 }
+_SCRIPTING = {
+    "easing": "Ease Trans ease",
+    "exports": "Export export exports_of",
+    "input_events": "InputEvent InputEventAction InputEventJoypadButton InputEventJoypadMotion"
+    " InputEventKey InputEventMouseButton InputEventMouseMotion",
+    "input_map": "InputMap",
+    "input_state": "Input",
+    "lifecycle": "ProcessMode",
+    "node": "Node is_instance_valid",
+    "node3d": "Node3D",
+    "packed_scene": "PackedScene load_scene",
+    "paths": "NodePathError",
+    "reports": "FreedError ScriptError",
+    "resources": "Resource add_loader load resource_root save_resource set_resource_root",
+    "scene_writing": "save_scene",
+    "signals": "Signal",
+    "tasks": "Task",
+    "timers": "ProcessCallback SceneTreeTimer Timer",
+    "tree": "GroupCall SceneTree",
+    "tween": "Tween TweenPause",
+    "vectors": "Quaternion Vector3",
+    "window_input": "WindowInput",
+}
+_LATE = _DRAWING | {
+    name: f"scripting.{module}" for module, names in _SCRIPTING.items() for name in names.split()
+}
 
 
 def __getattr__(name: str) -> Any:
-    """Load what draws only when it is asked for."""
-    if name not in _DRAWING:
+    """Load what draws, and what scripts use, only when it is asked for."""
+    if name not in _LATE:
         raise AttributeError(f"module 'tifo' has no attribute '{name}'")
     from importlib import import_module
 
-    return getattr(import_module(f"tifo.{_DRAWING[name]}"), name)
+    return getattr(import_module(f"tifo.{_LATE[name]}"), name)

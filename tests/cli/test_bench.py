@@ -78,6 +78,15 @@ def test_memory_counts_what_a_crowd_has(capsys: pytest.CaptureFixture[str]) -> N
     assert "baked ones" in capsys.readouterr().out
 
 
+def test_scripting(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("scripting", "--nodes", "50", "--listeners", "3", "--runs", "10")
+    result = figures(capsys, *words)
+    assert (result["nodes"], result["listeners"], result["runs"]) == (50, 3, 10)
+    assert result["emits_per_second"] == pytest.approx(1e6 / result["emit_us"], rel=0.01)  # type: ignore[operator]
+    assert main(["bench", *words]) == 0
+    assert "emissions a second" in capsys.readouterr().out
+
+
 @pytest.mark.gl
 def test_frame(capsys: pytest.CaptureFixture[str]) -> None:
     result = figures(capsys, "frame", "--agents", "200", "--size", "80x60", "--runs", "2")
@@ -100,6 +109,7 @@ def test_a_table_for_people(capsys: pytest.CaptureFixture[str]) -> None:
         ("evaluate", "--runs", "0"),
         ("tick", "--agents", "0"),
         ("tick", "--history", "1"),
+        ("scripting", "--nodes", "0"),
     ],
 )
 def test_impossible_sizes_are_refused(

@@ -5,6 +5,7 @@ evaluate: all streams for one pose tick (sampling, kinematics, palettes, store);
 tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
 memory: what poses and clips take, streamed and baked, and what a tick copies.
+scripting: a frame of many nodes with `_process`, and emissions of a signal.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame", "memory")
+BENCHMARKS = ("evaluate", "tick", "frame", "memory", "scripting")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,6 +34,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
     parser.add_argument(
         "--tree", choices=("plain", "deep"), default="plain", help="what streams play (evaluate)"
+    )
+    parser.add_argument("--nodes", type=int, default=10_000, metavar="N", help="nodes (scripting)")
+    parser.add_argument(
+        "--listeners", type=int, default=10, metavar="N", help="of a signal (scripting)"
     )
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
     parser.add_argument(
@@ -91,6 +96,14 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
                 **common,
             )
 
+    elif options.benchmark == "scripting":
+        from ..benchmarks.scripting import scripting
+
+        def measure() -> dict[str, Any]:
+            return scripting(
+                nodes=options.nodes, listeners=options.listeners, runs=options.runs or 300
+            )
+
     else:
         from ..benchmarks.frame import frame
 
@@ -104,7 +117,10 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
 def _report(console: Any, result: dict[str, Any]) -> None:
     from rich.table import Table
 
-    facts = ("agents", "streams", "joints", "history_poses", "width_pixels", "height_pixels")
+    facts = (
+        *("agents", "streams", "joints", "history_poses", "width_pixels", "height_pixels"),
+        *("nodes", "listeners"),
+    )
     sizes = ", ".join(f"{result[k]:,} {k.split('_')[0]}" for k in facts if k in result)
     console.print(f"[bold]{result['benchmark']}[/]: {sizes}")
     if result["benchmark"] == "memory":
@@ -122,7 +138,14 @@ def _report(console: Any, result: dict[str, Any]) -> None:
     for group in ("systems", "cameras"):
         for name, figures in result.get(group, {}).items():
             row(f"  {name}", figures)
+    if "frame_after_adding" in result:
+        row("after a node was added", result["frame_after_adding"])
     console.print(table)
+    if "emit_us" in result:
+        console.print(
+            f"{result['emits_per_second']:,} emissions a second, {result['emit_us']:.2f} us each; "
+            f"to add a node: {result['add_node_us']:.1f} us"
+        )
     if "ratio" in result:
         console.print(
             f"{result['ratio']:.2f} times as long as plain clips, "
