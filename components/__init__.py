@@ -6,6 +6,7 @@ and is never reused. Nothing here knows of systems, engines or drawing.
 
 from .animation import AgentAnimID, BakedAnim, Transition
 from .appearance import Appearance
+from .attachment import MOST_PARTS, Attachment, PartBits
 from .detail import Detail, Level
 from .dilation import Dilation, DilationRequest
 from .motion import MotionState
@@ -15,14 +16,17 @@ from .team import Team
 from .view import View
 
 __all__ = [
+    "MOST_PARTS",
     "AgentAnimID",
     "Appearance",
+    "Attachment",
     "BakedAnim",
     "Detail",
     "Dilation",
     "DilationRequest",
     "Level",
     "MotionState",
+    "PartBits",
     "Placement",
     "Seat",
     "Section",

@@ -18,7 +18,7 @@ from ..components import (
     Team,
     Transition,
 )
-from ..engine.animation.clip import Clip
+from ..engine.animation.clip import rest_clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
 from ..engine.behaviour.events import EventQueue
@@ -65,7 +65,7 @@ def spawn_crowd(
     """
     seeds = np.random.SeedSequence(spec.seed).spawn(5)
     rng_seats, rng_sides, rng_looks, rng_motion, rng_place = map(np.random.default_rng, seeds)
-    clips = character.clips or (_rest_clip(character),)
+    clips = character.clips or (rest_clip(character.skeleton),)
     library = sort_motions(clips)
     plans = None
     if spec.poses == "streams":
@@ -185,14 +185,3 @@ def _add_baked(crowd: Crowd, bank: ClipBank, figure: Figure, rng: np.random.Gene
     crowd.baked = (poses, clips)
     for component in crowd.baked:
         esper.add_component(crowd.entity, component)
-
-
-def _rest_clip(character: Character) -> Clip:
-    skeleton = character.skeleton
-    return Clip(
-        "rest",
-        0.0,
-        skeleton.rest_rotation[None],
-        skeleton.rest_translation[None],
-        skeleton.rest_scale[None],
-    )

@@ -13,6 +13,7 @@ from .engine.animation import controllers
 from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh
 from .engine.assets.load import add_motions, load_character
+from .engine.assets.props import PROPS, Prop, builtin_prop
 from .engine.assets.spectator import builtin_spectator
 from .engine.behaviour.events import BallHit, Event, Goal
 from .engine.clock import Clock
@@ -24,6 +25,9 @@ from .engine.errors import AssetError, GraphicsError, TifoError
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.crowd import Crowd
+from .systems.part import Part
+from .systems.parts import add_part, remove_part
+from .systems.props import give_props
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "PROPS",
     "AgentAnimID",
     "Appearance",
     "AssetError",
@@ -52,7 +57,9 @@ __all__ = [
     "GraphicsError",
     "Material",
     "MotionState",
+    "Part",
     "Placement",
+    "Prop",
     "RenderSystem",
     "Schedule",
     "Seat",
@@ -67,15 +74,19 @@ __all__ = [
     "UniquePool",
     "View",
     "add_motions",
+    "add_part",
     "add_systems",
     "build_seats",
+    "builtin_prop",
     "builtin_spectator",
     "camera_presets",
     "character_of",
     "controllers",
+    "give_props",
     "load_character",
     "open_window",
     "pick_seat",
+    "remove_part",
     "spawn_crowd",
     "tick_systems",
 ]

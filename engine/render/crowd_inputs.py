@@ -32,6 +32,9 @@ class CrowdInputs:
     ----------
     columns
         The crowd's columns; read at every update.
+    parent
+        For a part: the inputs of its crowd. What both have in common is not copied twice, and must
+        have been updated before.
 
     Attributes
     ----------
@@ -39,25 +42,36 @@ class CrowdInputs:
         What programs that read the crowd are made with.
     """
 
-    def __init__(self, columns: CrowdColumns) -> None:
+    def __init__(self, columns: CrowdColumns, parent: CrowdInputs | None = None) -> None:
         self._columns = columns
         agents = len(columns.placement.yaw)
-        self._agents = AgentTables(agents)
+        self._shares_agents = self._shares_poses = False
+        if parent is not None:
+            theirs = parent._columns
+            self._shares_agents = theirs.appearance is columns.appearance
+            self._shares_poses = theirs.poses[0] is columns.poses[0]
+        self._agents: AgentTables
+        if parent is not None and self._shares_agents:
+            self._agents = parent._agents
+        else:
+            self._agents = AgentTables(agents)
         self._poses: PoseTextures
-        if len(columns.poses) == 3:
+        if parent is not None and self._shares_poses:
+            self._poses = parent._poses
+        elif len(columns.poses) == 3:
             self._poses = StreamTextures(columns.poses[0])
-            self._motion = MotionTable(agents, 3)
         else:
             self._poses = BakedTextures(columns.poses[0])
-            self._motion = MotionTable(agents, 1)
+        self._motion = MotionTable(agents, 3 if len(columns.poses) == 3 else 1)
         self.defines: dict[str, int] = dict(self._poses.defines)
 
     def update(self, tick: int) -> int:
         """Copy what the simulation changed; bytes copied."""
         columns = self._columns
-        copied = self._poses.update(tick)
-        copied += self._agents.update_place(columns.placement)
-        copied += self._agents.update_looks(columns.appearance)
+        copied = 0 if self._shares_poses else self._poses.update(tick)
+        if not self._shares_agents:
+            copied += self._agents.update_place(columns.placement)
+            copied += self._agents.update_looks(columns.appearance)
         if len(columns.poses) == 3:
             _, anim, transition = columns.poses
             return copied + self._motion.update_streams(anim, transition, BODY, tick)
@@ -81,7 +95,9 @@ class CrowdInputs:
         self._poses.bind(program, markers=markers)
 
     def delete(self) -> None:
-        """Delete everything on the GPU."""
-        self._poses.delete()
-        self._agents.delete()
+        """Delete everything on the GPU, but for what belongs to the parent."""
+        if not self._shares_poses:
+            self._poses.delete()
+        if not self._shares_agents:
+            self._agents.delete()
         self._motion.delete()

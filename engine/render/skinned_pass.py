@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +54,14 @@ class InstanceList:
         layout = [Attribute("agent", 1, np.uint32, integer=True)]
         return VertexInput(self.buffer, layout, divisor=divisor)
 
+    def inputs(self) -> list[VertexInput]:
+        """All attributes of an instance."""
+        return [self.input()]
+
+    def delete(self) -> None:
+        """Delete what is on the GPU."""
+        self.buffer.delete()
+
 
 class SkinnedPass:
     """Draws a character's meshes, one level of detail a list of agents.
@@ -63,25 +71,27 @@ class SkinnedPass:
     character
         Meshes and materials; missing coarser levels are replaced by the coarsest there is.
     defines
-        Of the pose source.
-    levels
-        How many lists of agents there are.
+        Of the pose source, and whatever else the shaders are made with.
+    lists
+        For each level who is drawn at it; the pass deletes them with itself.
     """
 
-    def __init__(self, character: Character, defines: Mapping[str, int], levels: int) -> None:
+    def __init__(
+        self, character: Character, defines: Mapping[str, int], lists: Sequence[InstanceList]
+    ) -> None:
         vertex, fragment = "crowd/skinned.vert.glsl", "crowd/skinned.frag.glsl"
         self._plain = Program(vertex, fragment, defines=dict(defines))
         self._textured: Program | None = None
         if any(material.image is not None for material in character.materials):
             self._textured = Program(vertex, fragment, defines={**defines, "TEXTURED": 1})
         meshes = [character.meshes, *character.lower_levels]
-        self.lists = tuple(InstanceList() for _ in range(levels))
+        self.lists = tuple(lists)
         self._levels = tuple(
             tuple(
-                self._upload(batch, self.lists[level])
+                self._upload(batch, agents)
                 for batch in make_batches(meshes[min(level, len(meshes) - 1)], character.materials)
             )
-            for level in range(levels)
+            for level, agents in enumerate(self.lists)
         )
 
     def draw(self, frame: Frame, inputs: CrowdInputs) -> int:
@@ -115,7 +125,7 @@ class SkinnedPass:
         indices = Buffer(batch.indices)
         vertex_array = VertexArray(
             program,
-            [VertexInput(vertices, VERTEX, normalised=("color",)), agents.input()],
+            [VertexInput(vertices, VERTEX, normalised=("color",)), *agents.inputs()],
             indices,
         )
         return _Drawn(program, vertex_array, (vertices, indices), image, batch.double_sided)
@@ -130,7 +140,7 @@ class SkinnedPass:
                 if batch.image is not None:
                     batch.image.delete()
         for agents in self.lists:
-            agents.buffer.delete()
+            agents.delete()
         self._plain.delete()
         if self._textured is not None:
             self._textured.delete()

@@ -238,6 +238,13 @@ class BlendLadder:
             static = rows[first : first + _AT_ONCE].astype(np.int64) - store.stream_rows
             store.write_static(static, poses, self.pool.markers.places(poses))
 
+    def close(self) -> None:
+        """Give the slots of running blends back, and heed a pool that stays no more."""
+        blending = self.transition.duration > 0
+        self.slots.release(self.transition.row[blending])
+        self.pool.before_cut.remove(self.before_cut)
+        self.uniques.before_cut.remove(self.before_cut)
+
     def before_cut(self, row: int, removed: bool) -> None:
         """Save what agents show of a stream or unique whose poses are about to be lost.
 

@@ -14,6 +14,9 @@ in uvec4 joints;
 in vec4 weights;
 in uint surface;               // 0 to 4: the agent's colour; 255: the material's
 in uint agent;
+#ifdef HOOKED
+in mat3x4 hook;                // rows from the part's model space to the agent's
+#endif
 
 out vec3 f_place;
 out vec3 f_normal;
@@ -27,6 +30,9 @@ void main()
 {
     int id = int(agent);
     mat3x4 rows = skin_matrix(fetch_posture(id), joints, weights);
+#ifdef HOOKED
+    rows = after(hook, rows);
+#endif
     vec3 model = transformed(rows, position);
     Body body = fetch_body(id);
     f_place = to_stadium(body, model);
