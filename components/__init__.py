@@ -6,6 +6,7 @@ and is never reused. Nothing here knows of systems, engines or drawing.
 
 from .animation import AgentAnimID, BakedAnim, Transition
 from .appearance import Appearance
+from .attachment import MOST_PARTS, Attachment, PartBits
 from .body import Body
 from .detail import Detail, Level
 from .dilation import Dilation, DilationRequest
@@ -17,8 +18,10 @@ from .team import Team
 from .view import View
 
 __all__ = [
+    "MOST_PARTS",
     "AgentAnimID",
     "Appearance",
+    "Attachment",
     "BakedAnim",
     "Body",
     "Detail",
@@ -27,6 +30,7 @@ __all__ = [
     "Level",
     "MotionState",
     "Overlays",
+    "PartBits",
     "Placement",
     "Seat",
     "Section",

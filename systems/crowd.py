@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +17,6 @@ from ..components import (
     Body,
     Detail,
     Dilation,
-    DilationRequest,
     MotionState,
     Placement,
     Seat,
@@ -26,12 +25,13 @@ from ..components import (
 )
 from ..engine.assets.character import Character
 from ..engine.behaviour.events import Event, EventQueue
-from ..engine.crowd.agents import agent_ids, agent_values
+from ..engine.crowd.agents import agent_ids
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.physique import Physique
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.overrides import JointOverride, OverrideSet
+from ..engine.streams.asking import ask_dilation, ask_streamed, ask_unique
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.blend_counts import LadderCounts
 from ..engine.streams.blending import agent_palettes
@@ -41,6 +41,9 @@ from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
 from .crowd_overlays import BLEND_SECONDS, OverlayCalls
+
+if TYPE_CHECKING:
+    from .part import Part
 
 FOCUS_RADIUS = 60.0
 """Metres around a focus in which agents never jump."""
@@ -70,6 +73,8 @@ class Crowd(OverlayCalls):
         Proportions of the character, its body types and the seats.
     baked
         Baked poses and who shows which; None in a streamed crowd.
+    parts
+        What hangs on the agents, by name.
     """
 
     entity: int
@@ -95,6 +100,7 @@ class Crowd(OverlayCalls):
     clip_feed: ClipEventFeed | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
     physique: Physique | None = None
+    parts: dict[str, Part] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Number of agents, absent ones included."""
@@ -146,10 +152,7 @@ class Crowd(OverlayCalls):
         ValueError
             For a baked crowd, agents that don't exist, a stale stream, or values out of range.
         """
-        ladder = self._ladder()
-        row = ladder.pool.row(stream)
-        longest = float(ladder.pool.history[row] - 2)
-        self._ask(agents, row, part, duration, np.nan if offset is None else offset, longest)
+        ask_streamed(self._ladder(), agents, stream, part, duration, offset)
 
     def transition_to_unique(
         self,
@@ -160,7 +163,7 @@ class Crowd(OverlayCalls):
         duration: float | ArrayLike = BLEND_SECONDS,
     ) -> None:
         """Ask agents to blend to a unique; as `transition_to_streamed`, without an offset."""
-        self._ask(agents, self._ladder().uniques.row(unique), part, duration, 0.0, 0.0)
+        ask_unique(self._ladder(), agents, unique, part, duration)
 
     def set_focus(
         self, place: tuple[float, float, float] | None, *, radius: float = FOCUS_RADIUS
@@ -182,25 +185,6 @@ class Crowd(OverlayCalls):
         if not radius >= 0:
             raise ValueError(f"radius is {radius}, expected metres >= 0")
         self._ladder().focus = Focus(place, radius)
-
-    def _ask(
-        self,
-        agents: int | ArrayLike,
-        row: int,
-        part: int,
-        duration: float | ArrayLike,
-        offset: float | ArrayLike,
-        longest: float,
-    ) -> None:
-        ladder = self._ladder()
-        parts = len(ladder.anim.row)
-        if not 0 <= part < parts:
-            raise ValueError(f"part is {part}, expected 0 to {parts - 1}")
-        ids = agent_ids(agents, len(self))
-        seconds = agent_values("duration", duration, len(ids), 0.0, np.inf)
-        poses = agent_values("offset", offset, len(ids), 0.0, longest, drawn=True)
-        rows = ladder.pool.twins.resolve(row, self.body.kind[ids])
-        ladder.ask(part, ids, rows, poses, seconds * np.float32(POSE_RATE))
 
     def _ladder(self) -> BlendLadder:
         if self.ladder is None:
@@ -290,21 +274,7 @@ class Crowd(OverlayCalls):
             For a baked crowd, unknown agents, targets that no stream has room for, or a time
             outside 0 to 86,400 s.
         """
-        pool = self._streams()
-        ids = np.asarray(agents, np.int64)
-        wanted = np.asarray(targets, np.float32)
-        if wanted.shape != ids.shape or ids.ndim != 1:
-            raise ValueError(f"targets has shape {wanted.shape}, expected {ids.shape}")
-        if len(ids) and (ids.min() < 0 or ids.max() >= len(self)):
-            raise ValueError(
-                f"agents are {ids.min()} to {ids.max()}, expected 0 to {len(self) - 1}"
-            )
-        longest = int(pool.history_goal.max()) - 2
-        if not ((wanted >= 0) & (wanted <= longest)).all():
-            raise ValueError(f"targets must be 0 to {longest} poses")
-        if not 0 <= seconds <= 86_400:
-            raise ValueError(f"seconds is {seconds}, expected 0 to 86400")
-        self.dilation.waiting.append(DilationRequest(0, ids, wanted, float(seconds)))
+        ask_dilation(self.dilation, self._streams(), len(self), agents, targets, seconds)
 
     def set_history(self, history: int, seconds: float = 3.0) -> None:
         """Let all streams keep more or fewer poses; agents spread over them as they were spread.
@@ -373,7 +343,9 @@ class Crowd(OverlayCalls):
         clips = self.baked[1] if self.baked else None
         overlays = self.overlays.columns if self.overlays else None
         columns = (self.anim, self.transition, overlays, clips)
-        components += [part for part in columns if part is not None]
+        components += [column for column in columns if column is not None]
+        for _, part in sorted(self.parts.items()):
+            components += part.columns()
         for component in components:
             for column in fields(component):
                 value = getattr(component, column.name)

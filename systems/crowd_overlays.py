@@ -8,7 +8,6 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..components import Body
 from ..components.overlays import NO_MASK
 from ..engine.animation.controllers import Mask
 from ..engine.crowd.agents import agent_ids, agent_values
@@ -26,7 +25,6 @@ class OverlayCalls:
     __slots__ = ()
 
     overlays: OverlayStage | None
-    body: Body
 
     @abstractmethod
     def __len__(self) -> int:
@@ -102,7 +100,7 @@ class OverlayCalls:
         weights = agent_values("weight", weight, len(ids), 1e-3, 1.0)
         seconds = agent_values("duration", duration, len(ids), 0.0, np.inf)
         ticks = seconds * np.float32(POSE_RATE)
-        rows = ladder.pool.twins.resolve(row, self.body.kind[ids])
+        rows = ladder.own_rows(ids, row)
         stage.ask(self._layer(layer), ids, number, rows, offsets, weights, ticks)
 
     def clear_overlay(

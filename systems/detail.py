@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import esper
 
-from ..components import Detail, Placement, Seat, View
+from ..components import Attachment, Detail, PartBits, Placement, Seat, View
 from ..engine.clock import Clock
-from ..engine.crowd.detail import select_detail
+from ..engine.crowd.detail import select_detail, select_part
 from ..engine.crowd.figure import Figure
 from .query import crowds
 
 
 class DetailSystem(esper.Processor):
-    """Chooses which agents are drawn at which level; needs one entity with a `View`.
+    """Chooses which agents are drawn at which level, and which of them with their parts.
+
+    Needs one entity with a `View`.
 
     Parameters
     ----------
@@ -46,3 +48,8 @@ class DetailSystem(esper.Processor):
                 levels=self._levels,
                 coarseness=self.coarseness,
             )
+        for _, (attachment, detail) in crowds(Attachment, Detail):
+            parent = esper.try_component(attachment.parent, Detail)
+            bits = esper.try_component(attachment.parent, PartBits)
+            if parent is not None and bits is not None:
+                select_part(detail, parent, bits, attachment.bit)

@@ -1,4 +1,4 @@
-"""Draws the stadium and its crowds: all GL work of a frame happens here."""
+"""Draws the stadium, its crowds and their parts: all GL work of a frame happens here."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import esper
 from ..components import (
     AgentAnimID,
     Appearance,
+    Attachment,
     BakedAnim,
     Body,
     Detail,
@@ -23,6 +24,7 @@ from ..engine.overrides import OverrideSet
 from ..engine.render.crowd_inputs import CrowdColumns
 from ..engine.render.crowd_renderer import CrowdRenderer, DrawCounts
 from ..engine.render.frame import Frame
+from ..engine.render.part_renderer import PartRenderer
 from ..engine.render.stadium_pass import StadiumPass
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.overlaying import OverlayStage
@@ -48,6 +50,7 @@ class RenderSystem(esper.Processor):
         self.size = size
         self.counts = DrawCounts()
         self._crowds: dict[int, CrowdRenderer] = {}
+        self._parts: dict[int, PartRenderer] = {}
         self._stadiums: dict[int, StadiumPass] = {}
 
     def process(self, clock: Clock) -> None:
@@ -59,13 +62,13 @@ class RenderSystem(esper.Processor):
         frame = Frame(view.view, view.projection, self.size, clock.pose_tick, clock.alpha)
         self.counts = DrawCounts()
         for entity, (character, detail) in crowds(Character, Detail):
+            if esper.has_component(entity, Attachment):
+                continue
             renderer = self._crowds.get(entity)
             if renderer is None:
                 renderer = self._crowds[entity] = _renderer(entity, character, detail)
-            renderer.update(clock.pose_tick)
-            renderer.draw(frame)
-            self.counts.triangles += renderer.counts.triangles
-            self.counts.uploaded += renderer.counts.uploaded
+            self._draw(renderer, frame)
+        self._draw_parts(frame)
         for entity, (mesh,) in crowds(StadiumMesh):
             if entity not in self._stadiums:
                 self._stadiums[entity] = StadiumPass(mesh)
@@ -73,35 +76,91 @@ class RenderSystem(esper.Processor):
 
     def delete(self) -> None:
         """Delete everything on the GPU."""
+        for part in self._parts.values():
+            part.delete()
         for renderer in self._crowds.values():
             renderer.delete()
         for stadium in self._stadiums.values():
             stadium.delete()
+        self._parts.clear()
         self._crowds.clear()
         self._stadiums.clear()
 
+    def _draw_parts(self, frame: Frame) -> None:
+        """After the crowds, whose tables they share."""
+        found = crowds(Attachment, Character, Detail)
+        there = {entity for entity, (part, _, _) in found if part.parent in self._crowds}
+        for gone in self._parts.keys() - there:
+            self._parts.pop(gone).delete()
+        for entity, (attachment, character, detail) in found:
+            if entity not in there:
+                continue
+            if entity not in self._parts:
+                self._parts[entity] = PartRenderer(
+                    attachment,
+                    character,
+                    detail,
+                    self._crowds[attachment.parent].inputs,
+                    _part_columns(entity, attachment, detail),
+                )
+            self._draw(self._parts[entity], frame)
+
+    def _draw(self, renderer: CrowdRenderer | PartRenderer, frame: Frame) -> None:
+        renderer.update(frame.tick)
+        renderer.draw(frame)
+        self.counts.triangles += renderer.counts.triangles
+        self.counts.uploaded += renderer.counts.uploaded
+
 
 def _renderer(entity: int, character: Character, detail: Detail) -> CrowdRenderer:
-    poses: tuple[StreamPool, AgentAnimID, Transition] | tuple[BakedPoses, BakedAnim]
-    if esper.has_component(entity, StreamPool):
-        poses = (
-            esper.component_for_entity(entity, StreamPool),
-            esper.component_for_entity(entity, AgentAnimID),
-            esper.component_for_entity(entity, Transition),
-        )
-    else:
-        poses = (
-            esper.component_for_entity(entity, BakedPoses),
-            esper.component_for_entity(entity, BakedAnim),
-        )
-    columns = CrowdColumns(
+    looks = esper.component_for_entity(entity, Appearance)
+    columns = _crowd_columns(entity, looks, detail)
+    return CrowdRenderer(character, esper.component_for_entity(entity, Figure).height, columns)
+
+
+def _crowd_columns(entity: int, looks: Appearance, detail: Detail) -> CrowdColumns:
+    return CrowdColumns(
         esper.component_for_entity(entity, Placement),
-        esper.component_for_entity(entity, Appearance),
+        looks,
         detail,
-        poses,
+        _poses(entity),
         esper.try_component(entity, OverlayStage),
         esper.try_component(entity, OverrideSet),
         esper.try_component(entity, Body),
         esper.try_component(entity, Physique),
     )
-    return CrowdRenderer(character, esper.component_for_entity(entity, Figure).height, columns)
+
+
+def _poses(
+    entity: int,
+) -> tuple[StreamPool, AgentAnimID, Transition] | tuple[BakedPoses, BakedAnim]:
+    if esper.has_component(entity, StreamPool):
+        return (
+            esper.component_for_entity(entity, StreamPool),
+            esper.component_for_entity(entity, AgentAnimID),
+            esper.component_for_entity(entity, Transition),
+        )
+    return (
+        esper.component_for_entity(entity, BakedPoses),
+        esper.component_for_entity(entity, BakedAnim),
+    )
+
+
+def _part_columns(entity: int, attachment: Attachment, detail: Detail) -> CrowdColumns | None:
+    """Whatever a part has not of its own is its crowd's; None if it has nothing of its own."""
+    parent = attachment.parent
+    looks = esper.try_component(entity, Appearance)
+    if attachment.follows_body:
+        return None if looks is None else _crowd_columns(parent, looks, detail)
+    pool = esper.try_component(entity, StreamPool)
+    poses = (
+        esper.component_for_entity(parent, StreamPool) if pool is None else pool,
+        esper.component_for_entity(entity, AgentAnimID),
+        esper.component_for_entity(entity, Transition),
+    )
+    return CrowdColumns(
+        esper.component_for_entity(parent, Placement),
+        esper.component_for_entity(parent, Appearance) if looks is None else looks,
+        detail,
+        poses,
+    )

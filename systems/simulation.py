@@ -9,12 +9,13 @@ from uuid import uuid4
 
 import esper
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from ..components import View
+from ..components import Appearance, View
 from ..engine.animation.clip import Clip
 from ..engine.assets.character import Character
 from ..engine.assets.load import add_motions, load_character
+from ..engine.assets.props import fits
 from ..engine.assets.retarget import NotHumanoidError, loop_clip
 from ..engine.assets.simplify import with_lower_levels
 from ..engine.assets.spectator import builtin_spectator
@@ -27,6 +28,9 @@ from ..engine.crowd.stadium_mesh import StadiumMesh
 from ..engine.streams.offsets import OffsetSource
 from .crowd import Crowd
 from .detail import DetailSystem
+from .part import Part
+from .parts import PartMotion, add_part, remove_part
+from .props import give_props
 from .schedule import Schedule, tick_systems
 from .spawn import spawn_crowd
 
@@ -72,6 +76,8 @@ class Simulation:
         self.schedule = Schedule(self.clock, tick_systems(self.spec.seed), [self.detail])
         with self.active():
             self.crowd: Crowd = spawn_crowd(self.spec, self.plan, character, offsets=offsets)
+            if self.spec.props > 0 and fits(character):
+                give_props(self.crowd, self.spec.props, tick=self.clock.pose_tick)
             esper.add_processor(self.schedule)
 
     @contextmanager
@@ -106,6 +112,44 @@ class Simulation:
             for entity, _ in esper.get_component(View):
                 esper.delete_entity(entity, immediate=True)
             esper.create_entity(View(view, projection, height))
+
+    def add_part(
+        self,
+        name: str,
+        character: Character,
+        *,
+        hook: str | None = None,
+        transform: ArrayLike | None = None,
+        motion: PartMotion = "own",
+        streams: int = 8,
+        history: int = 60,
+        slots: int = 64,
+        uniques: int = 0,
+        agents: int | ArrayLike | None = None,
+        appearance: Appearance | None = None,
+    ) -> Part:
+        """Hang something on agents: a hat, a scarf, a flag; see `tifo.add_part`."""
+        with self.active():
+            return add_part(
+                self.crowd,
+                name,
+                character,
+                tick=self.clock.pose_tick,
+                hook=hook,
+                transform=transform,
+                motion=motion,
+                streams=streams,
+                history=history,
+                slots=slots,
+                uniques=uniques,
+                agents=agents,
+                appearance=appearance,
+            )
+
+    def remove_part(self, name: str) -> None:
+        """Remove a part; ValueError if there is none of that name."""
+        with self.active():
+            remove_part(self.crowd, name)
 
     def build_mesh(self) -> None:
         """Add the stadium's own geometry to the world, for drawing, unless it is there."""

@@ -20,7 +20,7 @@ from ..components import (
     Team,
     Transition,
 )
-from ..engine.animation.clip import Clip
+from ..engine.animation.clip import rest_clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
 from ..engine.behaviour.events import EventQueue
@@ -77,7 +77,7 @@ def spawn_crowd(
     rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies = map(
         np.random.default_rng, seeds
     )
-    clips = character.clips or (_rest_clip(character),)
+    clips = character.clips or (rest_clip(character.skeleton),)
     library = sort_motions(clips)
     plans = None
     if spec.poses == "streams":
@@ -201,7 +201,9 @@ def _add_streams(
     anim.start[0] = anim.target[0] = initial_offsets(offsets, count, spec.history, rng)
     crowd.pool, crowd.anim, crowd.transition = pool, anim, Transition.allocate(parts_of_body, count)
     uniques, slots = UniquePool(pool), SlotPool(pool.store)
-    crowd.ladder = BlendLadder(pool, uniques, slots, anim, crowd.transition, crowd.placement)
+    crowd.ladder = BlendLadder(
+        pool, uniques, slots, anim, crowd.transition, crowd.placement, crowd.body.kind
+    )
     overlays, masks = Overlays.allocate(MAX_LAYERS, count), MaskTable(pool.skeleton)
     for name, mask in figure_masks(pool.skeleton, figure).items():
         masks.add(name, mask)
@@ -225,14 +227,3 @@ def _add_baked(crowd: Crowd, bank: ClipBank, figure: Figure, rng: np.random.Gene
     crowd.baked = (poses, clips)
     for component in crowd.baked:
         esper.add_component(crowd.entity, component)
-
-
-def _rest_clip(character: Character) -> Clip:
-    skeleton = character.skeleton
-    return Clip(
-        "rest",
-        0.0,
-        skeleton.rest_rotation[None],
-        skeleton.rest_translation[None],
-        skeleton.rest_scale[None],
-    )

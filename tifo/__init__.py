@@ -14,6 +14,7 @@ from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh
 from .engine.assets.load import add_motions, load_character
 from .engine.assets.motion_file import Motions, load_motions
+from .engine.assets.props import PROPS, Prop, builtin_prop
 from .engine.assets.retarget import (
     Humanoid,
     Loop,
@@ -37,6 +38,9 @@ from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, 
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.crowd import Crowd
+from .systems.part import Part
+from .systems.parts import add_part, remove_part
+from .systems.props import give_props
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
@@ -84,6 +88,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "PROPS",
     "AgentAnimID",
     "Appearance",
     "AssetError",
@@ -124,9 +129,11 @@ __all__ = [
     "NotHumanoidError",
     "OverriddenJoints",
     "PackedScene",
+    "Part",
     "Placement",
     "ProcessCallback",
     "ProcessMode",
+    "Prop",
     "Quaternion",
     "RenderSystem",
     "Resource",
@@ -155,8 +162,10 @@ __all__ = [
     "WindowInput",
     "add_loader",
     "add_motions",
+    "add_part",
     "add_systems",
     "build_seats",
+    "builtin_prop",
     "builtin_spectator",
     "camera_presets",
     "character_of",
@@ -165,6 +174,7 @@ __all__ = [
     "export",
     "exports_of",
     "find_loop",
+    "give_props",
     "humanoid",
     "is_instance_valid",
     "load",
@@ -176,6 +186,7 @@ __all__ = [
     "mirror_clip",
     "open_window",
     "pick_seat",
+    "remove_part",
     "resource_root",
     "retarget",
     "save_resource",

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .skeleton import Skeleton
+
 FloatArray = NDArray[np.float32]
 
 MIN_KEY_RATE = 60.0
@@ -115,6 +117,17 @@ class Clip:
     def joint_count(self) -> int:
         """Number of joints J."""
         return int(self.rotation.shape[1])
+
+
+def rest_clip(skeleton: Skeleton) -> Clip:
+    """A clip of one key called ``rest``: the skeleton's rest pose."""
+    return Clip(
+        "rest",
+        0.0,
+        skeleton.rest_rotation[None],
+        skeleton.rest_translation[None],
+        skeleton.rest_scale[None],
+    )
 
 
 def uniform_times(duration: float, rate: float = MIN_KEY_RATE) -> NDArray[np.float64]:

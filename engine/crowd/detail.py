@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...components.attachment import PartBits
 from ...components.detail import Detail, Level
 from ...components.placement import Placement
 from ...components.view import View
@@ -107,3 +108,20 @@ def select_detail(
     pixels = pixel_heights(placement.scale[agents], height, view, depth)
     level = np.searchsorted(-coarseness * np.array(MESH_PIXELS, np.float32), -pixels)
     detail.agents = tuple(agents[level == number] for number in Level)
+
+
+def select_part(detail: Detail, parent: Detail, bits: PartBits, bit: int) -> None:
+    """Sort the agents in view that have a part: at the levels of their bodies, none at the last.
+
+    Parameters
+    ----------
+    detail
+        Receives the ids.
+    parent
+        Of the crowd, selected before.
+    bits, bit
+        Which agents have which parts, and which part it is.
+    """
+    wanted = np.uint32(1 << bit)
+    near = [ids[(bits.bits[ids] & wanted) != 0] for ids in parent.agents[: Level.FAR]]
+    detail.agents = (*near, np.zeros(0, np.uint32))

@@ -48,6 +48,7 @@ _REAL = {
     "away_share": (0.0, 1.0),
     "children": (0.0, 1.0),
     "old": (0.0, 1.0),
+    "props": (0.0, 1.0),
 }
 
 
@@ -83,6 +84,9 @@ class CrowdSpec:
         Whether streams that nobody shows stop until somebody wants them again. What a stadium costs
         then follows from the motions that are in use; agents whose stream just woke play in step
         for a moment before they drift apart.
+    props
+        Share of a side's supporters who have a cap, a scarf or a flag in its colours. They are made
+        for the built-in spectator; other characters have none.
     poses
         Whether motions are streamed, or every frame of every clip is baked beforehand.
     offsets
@@ -115,6 +119,9 @@ class CrowdSpec:
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
     uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))
     rest_idle: bool = field(default=False, metadata=_help("stop streams that nobody shows"))
+    props: float = field(
+        default=0.35, metadata=_help("share of supporters with a cap, a scarf or a flag")
+    )
     poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")

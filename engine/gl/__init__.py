@@ -10,7 +10,7 @@ vertex arrays are unbound after each draw, texture unit 0 stays the active one.
 
 from .buffer import Buffer
 from .context import ContextInfo, create_offscreen_context, describe_context, open_window
-from .feedback import capture
+from .feedback import capture, capture_into
 from .framebuffer import Framebuffer
 from .objects import collect, live_objects
 from .program import Program
@@ -38,6 +38,7 @@ __all__ = [
     "VertexArray",
     "VertexInput",
     "capture",
+    "capture_into",
     "check_errors",
     "collect",
     "compose",

@@ -1,6 +1,7 @@
-"""Reading back what a vertex shader computes, by transform feedback.
+"""Keeping what a vertex shader computes, by transform feedback; nothing is drawn.
 
-Tests compare skinned vertices with NumPy through it; it draws nothing.
+`capture_into` leaves it in a buffer for a later pass. `capture` reads it back: tests compare
+skinned vertices with NumPy through it.
 """
 
 from __future__ import annotations
@@ -44,11 +45,41 @@ def capture(
     ValueError
         When the program captures nothing, or for a count that the buffers don't hold.
     """
+    count = vertex_array.resolve_count(count)
+    results = Buffer(0, "stream")
+    dtype = capture_into(results, program, vertex_array, count, instances)
+    records = results.read(dtype, count * instances).reshape(instances, count)
+    results.delete()
+    return records
+
+
+def capture_into(
+    results: Buffer,
+    program: Program,
+    vertex_array: VertexArray,
+    count: int | None = None,
+    instances: int = 1,
+) -> np.dtype[Any]:
+    """Run the vertex shader and leave its captured outputs in a buffer, which grows if it must.
+
+    Parameters
+    ----------
+    results
+        Receives the records, from its first byte on.
+    program, vertex_array, count, instances
+        As for `capture`, with the same errors.
+
+    Returns
+    -------
+    Type of one record, as `capture` describes it.
+    """
     if not program.outputs:
         raise ValueError(f"{program.label} captures nothing: make it with feedback=(names...)")
     dtype = np.dtype([(out.name, out.type.dtype, _shape(out)) for out in program.outputs])
     count = vertex_array.resolve_count(count)
-    results = Buffer(count * instances * dtype.itemsize, "stream")
+    nbytes = count * instances * dtype.itemsize
+    if nbytes > results.nbytes:
+        results.replace(nbytes)
     program.use()
     gl.glBindBufferBase(gl.GL_TRANSFORM_FEEDBACK_BUFFER, 0, results.name)
     gl.glEnable(gl.GL_RASTERIZER_DISCARD)
@@ -59,9 +90,7 @@ def capture(
         gl.glEndTransformFeedback()
         gl.glDisable(gl.GL_RASTERIZER_DISCARD)
         gl.glBindBufferBase(gl.GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0)
-    records = results.read(dtype).reshape(instances, count)
-    results.delete()
-    return records
+    return dtype
 
 
 def _shape(output: Variable) -> tuple[int, ...]:

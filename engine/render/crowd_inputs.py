@@ -47,6 +47,9 @@ class CrowdInputs:
     ----------
     columns
         The crowd's columns; read at every update.
+    parent
+        For a part: the inputs of its crowd. What both have in common is not copied twice, and must
+        have been updated before.
 
     Attributes
     ----------
@@ -54,17 +57,27 @@ class CrowdInputs:
         What programs that read the crowd, but not its palettes, are made with.
     """
 
-    def __init__(self, columns: CrowdColumns) -> None:
+    def __init__(self, columns: CrowdColumns, parent: CrowdInputs | None = None) -> None:
         self._columns = columns
         agents = len(columns.placement.yaw)
-        self._agents = AgentTables(agents)
+        self._shares_agents = self._shares_poses = False
+        if parent is not None:
+            theirs = parent._columns
+            self._shares_agents = theirs.appearance is columns.appearance
+            self._shares_poses = theirs.poses[0] is columns.poses[0]
+        self._agents: AgentTables
+        if parent is not None and self._shares_agents:
+            self._agents = parent._agents
+        else:
+            self._agents = AgentTables(agents)
         self._poses: PoseTextures
-        if len(columns.poses) == 3:
+        if parent is not None and self._shares_poses:
+            self._poses = parent._poses
+        elif len(columns.poses) == 3:
             self._poses = StreamTextures(columns.poses[0])
-            self._motion = MotionTable(agents, 3)
         else:
             self._poses = BakedTextures(columns.poses[0])
-            self._motion = MotionTable(agents, 1)
+        self._motion = MotionTable(agents, 3 if len(columns.poses) == 3 else 1)
         self.defines: dict[str, int] = dict(self._poses.defines)
         self._overlays: OverlayTable | None = None
         if columns.overlays is not None:
@@ -73,6 +86,11 @@ class CrowdInputs:
             self.defines["OVERLAYS"] = 1
         overrides = columns.overrides
         self._overrides = None if overrides is None else OverrideTables(overrides)
+
+    @property
+    def physique(self) -> Physique | None:
+        """Proportions of the crowd."""
+        return self._columns.physique
 
     @property
     def morphs(self) -> MorphWeights | None:
@@ -124,9 +142,10 @@ class CrowdInputs:
     def update(self, tick: int) -> int:
         """Copy what the simulation changed; bytes copied."""
         columns = self._columns
-        copied = self._poses.update(tick)
-        copied += self._agents.update_place(columns.placement, columns.body, columns.physique)
-        copied += self._agents.update_looks(columns.appearance)
+        copied = 0 if self._shares_poses else self._poses.update(tick)
+        if not self._shares_agents:
+            copied += self._agents.update_place(columns.placement, columns.body, columns.physique)
+            copied += self._agents.update_looks(columns.appearance)
         if self._overrides is not None:
             copied += self._overrides.update()
         if len(columns.poses) == 3:
@@ -170,9 +189,11 @@ class CrowdInputs:
             program["hips_bind"] = physique.hips_bind if physique else none
 
     def delete(self) -> None:
-        """Delete everything on the GPU."""
-        self._poses.delete()
-        self._agents.delete()
+        """Delete everything on the GPU, but for what belongs to the parent."""
+        if not self._shares_poses:
+            self._poses.delete()
+        if not self._shares_agents:
+            self._agents.delete()
         self._motion.delete()
         if self._overlays is not None:
             self._overlays.delete()

@@ -9,7 +9,7 @@ from ..assets.character import Character
 from .crowd_inputs import CrowdColumns, CrowdInputs
 from .figure_pass import FigurePass
 from .frame import Frame
-from .skinned_pass import SkinnedPass
+from .skinned_pass import InstanceList, SkinnedPass
 
 
 @dataclass(slots=True)
@@ -31,15 +31,22 @@ class CrowdRenderer:
         Height of the character in metres.
     columns
         The crowd's columns; read at every draw.
+
+    Attributes
+    ----------
+    inputs
+        What the crowd's shaders read, for whatever else is drawn of its agents.
+    counts
+        Of the last picture.
     """
 
     def __init__(self, character: Character, height: float, columns: CrowdColumns) -> None:
         self._character = character
         self._columns = columns
-        self._inputs = CrowdInputs(columns)
-        self._revision = self._inputs.revision
+        self.inputs = CrowdInputs(columns)
+        self._revision = self.inputs.revision
         self._skinned: SkinnedPass | None = None
-        self._figures = FigurePass(height, self._inputs.defines)
+        self._figures = FigurePass(height, self.inputs.defines)
         self.counts = DrawCounts()
 
     def update(self, tick: int) -> None:
@@ -50,7 +57,7 @@ class CrowdRenderer:
         GraphicsError
             For an override that does not compile.
         """
-        uploaded = self._inputs.update(tick)
+        uploaded = self.inputs.update(tick)
         lists = (*self._current().lists, self._figures.agents)
         for agents, ids in zip(lists, self._columns.detail.agents, strict=True):
             uploaded += agents.write(ids)
@@ -58,21 +65,22 @@ class CrowdRenderer:
 
     def draw(self, frame: Frame) -> None:
         """Draw what `update` copied into the bound framebuffer."""
-        self.counts.triangles = self._current().draw(frame, self._inputs)
-        self.counts.triangles += self._figures.draw(frame, self._inputs)
+        self.counts.triangles = self._current().draw(frame, self.inputs)
+        self.counts.triangles += self._figures.draw(frame, self.inputs)
 
     def delete(self) -> None:
         """Delete everything on the GPU."""
-        self._inputs.delete()
+        self.inputs.delete()
         if self._skinned is not None:
             self._skinned.delete()
         self._figures.delete()
 
     def _current(self) -> SkinnedPass:
         """The pass whose programs have the overrides that there are now."""
-        if self._skinned is None or self._revision != self._inputs.revision:
-            made = SkinnedPass(self._character, self._inputs, len(Level) - 1)
+        if self._skinned is None or self._revision != self.inputs.revision:
+            lists = [InstanceList() for _ in range(len(Level) - 1)]
+            made = SkinnedPass(self._character, self.inputs, lists)
             if self._skinned is not None:
                 self._skinned.delete()
-            self._skinned, self._revision = made, self._inputs.revision
+            self._skinned, self._revision = made, self.inputs.revision
         return self._skinned

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +54,14 @@ class InstanceList:
         layout = [Attribute("agent", 1, np.uint32, integer=True)]
         return VertexInput(self.buffer, layout, divisor=divisor)
 
+    def inputs(self) -> list[VertexInput]:
+        """All attributes of an instance."""
+        return [self.input()]
+
+    def delete(self) -> None:
+        """Delete what is on the GPU."""
+        self.buffer.delete()
+
 
 class SkinnedPass:
     """Draws a character's meshes, one level of detail a list of agents.
@@ -63,24 +72,32 @@ class SkinnedPass:
         Meshes and materials; missing coarser levels are replaced by the coarsest there is.
     inputs
         The crowd's, which make the programs.
-    levels
-        How many lists of agents there are.
+    lists
+        For each level who is drawn at it; the pass deletes them with itself.
+    switches
+        Defined in the programs as well.
     """
 
-    def __init__(self, character: Character, inputs: CrowdInputs, levels: int) -> None:
+    def __init__(
+        self,
+        character: Character,
+        inputs: CrowdInputs,
+        lists: Sequence[InstanceList],
+        switches: frozenset[str] = frozenset(),
+    ) -> None:
         self._inputs = inputs
         self._programs: dict[frozenset[str], Program] = {}
         meshes = [character.meshes, *character.lower_levels]
-        self.lists = tuple(InstanceList() for _ in range(levels))
+        self.lists = tuple(lists)
         self._levels = tuple(
             tuple(
-                self._upload(part, self.lists[level], switches)
+                self._upload(part, agents, switches | own)
                 for batch in make_batches(
                     meshes[min(level, len(meshes) - 1)], character.materials, inputs.morphs
                 )
-                for part, switches in _parts(batch, inputs.overridden)
+                for part, own in _parts(batch, inputs.overridden)
             )
-            for level in range(levels)
+            for level, agents in enumerate(self.lists)
         )
 
     def draw(self, frame: Frame, inputs: CrowdInputs) -> int:
@@ -116,7 +133,7 @@ class SkinnedPass:
         indices = Buffer(batch.indices)
         vertex_array = VertexArray(
             program,
-            [VertexInput(vertices, VERTEX, normalised=NORMALISED), agents.input()],
+            [VertexInput(vertices, VERTEX, normalised=NORMALISED), *agents.inputs()],
             indices,
         )
         return _Drawn(program, vertex_array, (vertices, indices), image, batch.double_sided)
@@ -131,7 +148,7 @@ class SkinnedPass:
                 if batch.image is not None:
                     batch.image.delete()
         for agents in self.lists:
-            agents.buffer.delete()
+            agents.delete()
         for program in self._programs.values():
             program.delete()
 

@@ -13,6 +13,7 @@ from where the last picture before it stood, so what is shown never jumps.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +46,21 @@ class Dilated(NamedTuple):
     moving: int
     lengthened: int
     ticks: float
+
+    def plus(self, other: Dilated) -> Dilated:
+        """Both together."""
+        return Dilated(
+            self.moving + other.moving,
+            self.lengthened + other.lengthened,
+            max(self.ticks, other.ticks),
+        )
+
+
+class PoolUser(NamedTuple):
+    """Columns that refer to the rows of a pool: a crowd's, or those of a part of it."""
+
+    anim: AgentAnimID
+    transition: Transition
 
 
 def change_rate(new: float, old: float, seconds: float, pose_rate: float = POSE_RATE) -> float:
@@ -202,7 +218,7 @@ def start_stream(
             targets = rng.uniform(0.0, longest, len(agents)).astype(np.float32)
         anim.row[part, agents] = row
         done = spread(pool, anim, part, agents, targets, seconds, tick, fastest=fastest)
-        total = _sum(total, done)
+        total = total.plus(done)
     return total
 
 
@@ -228,13 +244,19 @@ def finish(pool: StreamPool, anim: AgentAnimID, tick: int) -> int:
 
 
 def shrink_histories(
-    pool: StreamPool, anim: AgentAnimID, transition: Transition, tick: int
+    pool: StreamPool,
+    anim: AgentAnimID,
+    transition: Transition,
+    tick: int,
+    *,
+    others: Sequence[PoolUser] = (),
 ) -> Dilated:
     """Bring agents of streams that shall keep fewer poses nearer, and lower M behind them.
 
     Agents beyond the new history hurry at `FASTEST` unless they are on their way already. M of a
     stream is as low as the farthest agent allows at any time; sources of running blends hold it
-    until they end. Called once a pose tick, before the pool's evaluate.
+    until they end. Called once a pose tick, before the pool's evaluate; `others` are columns of
+    parts that play streams of the same pool.
     """
     total = Dilated(0, 0, 0.0)
     rows = np.flatnonzero(pool.history > pool.history_goal)
@@ -244,21 +266,37 @@ def shrink_histories(
     shrinks = np.zeros(count + 1, np.bool_)
     shrinks[rows] = True
     farthest = np.zeros(count)
+    for user in (PoolUser(anim, transition), *others):
+        total = total.plus(_bring_nearer(pool, user, shrinks, farthest, tick))
+    needed = np.ceil(farthest[rows]).astype(np.int32) + 2
+    pool.history[rows] = np.clip(needed, pool.history_goal[rows], pool.history[rows])
+    return total
+
+
+def _bring_nearer(
+    pool: StreamPool,
+    user: PoolUser,
+    shrinks: NDArray[np.bool_],
+    farthest: NDArray[np.float64],
+    tick: int,
+) -> Dilated:
+    """Let agents beyond new histories hurry; `farthest` (R,) grows to what is still shown."""
+    total = Dilated(0, 0, 0.0)
+    anim, transition = user
+    count = len(farthest)
     for part in range(len(anim.row)):
         on = np.flatnonzero(shrinks[np.minimum(anim.row[part], count)])
         goal = (pool.history_goal[anim.row[part, on]] - 2).astype(np.float32)
         beyond = anim.target[part, on] > goal
         hurry = on[beyond]
         if len(hurry):
-            total = _sum(total, dilate(pool, anim, part, hurry, goal[beyond], 0.0, tick))
+            total = total.plus(dilate(pool, anim, part, hurry, goal[beyond], 0.0, tick))
         offset = np.maximum(shown_offsets(pool, anim, part, on, tick), anim.target[part, on])
         np.maximum.at(farthest, anim.row[part, on], offset)
         leaving = np.flatnonzero(transition.duration[part] > 0)
         leaving = leaving[shrinks[np.minimum(transition.row[part, leaving], count)]]
         ends = (transition.start[part, leaving], transition.target[part, leaving])
         np.maximum.at(farthest, transition.row[part, leaving], np.maximum(*ends))
-    needed = np.ceil(farthest[rows]).astype(np.int32) + 2
-    pool.history[rows] = np.clip(needed, pool.history_goal[rows], pool.history[rows])
     return total
 
 
@@ -288,14 +326,6 @@ def _creep(
         moving=int(np.count_nonzero(moving)),
         lengthened=int(np.count_nonzero(moving & (rate > np.float32(fastest * 1.000001)))),
         ticks=float(took.max(initial=0.0)),
-    )
-
-
-def _sum(one: Dilated, other: Dilated) -> Dilated:
-    return Dilated(
-        one.moving + other.moving,
-        one.lengthened + other.lengthened,
-        max(one.ticks, other.ticks),
     )
 
 

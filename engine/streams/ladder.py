@@ -63,6 +63,8 @@ class BlendLadder:
         Columns that are changed.
     placement
         Where the agents are.
+    kind
+        (N,) their body types; all are built like the skeleton if None.
 
     Attributes
     ----------
@@ -80,6 +82,7 @@ class BlendLadder:
         anim: AgentAnimID,
         transition: Transition,
         placement: Placement,
+        kind: NDArray[np.uint8] | None = None,
     ) -> None:
         self.pool = pool
         self.uniques = uniques
@@ -87,11 +90,20 @@ class BlendLadder:
         self.anim = anim
         self.transition = transition
         self.placement = placement
+        self.kind = kind
         self.counts = LadderCounts()
         self.focus: Focus | None = None
         self._tick = 0
         pool.before_cut.append(self.before_cut)
         uniques.before_cut.append(self.before_cut)
+
+    def own_rows(
+        self, agents: NDArray[np.int64], row: NDArray[np.int32] | int
+    ) -> NDArray[np.int32] | int:
+        """Rows that show motions on the body types of agents (K,), as far as there are any."""
+        if self.kind is None:
+            return row
+        return self.pool.twins.resolve(row, self.kind[agents])
 
     def ask(
         self,
@@ -237,6 +249,13 @@ class BlendLadder:
                 poses = agent_palettes(self.pool, self.anim, self.transition, part, some, tick, 0.0)
             static = rows[first : first + _AT_ONCE].astype(np.int64) - store.stream_rows
             store.write_static(static, poses, self.pool.markers.places(poses))
+
+    def close(self) -> None:
+        """Give the slots of running blends back, and heed a pool that stays no more."""
+        blending = self.transition.duration > 0
+        self.slots.release(self.transition.row[blending])
+        self.pool.before_cut.remove(self.before_cut)
+        self.uniques.before_cut.remove(self.before_cut)
 
     def before_cut(self, row: int, removed: bool) -> None:
         """Save what agents show of a stream or unique whose poses are about to be lost.

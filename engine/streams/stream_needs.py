@@ -7,11 +7,13 @@ somebody is put on it. It has no past then, so those agents begin at its head an
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...components.animation import AgentAnimID, Transition
-from .dilation import Dilated, spread
+from .dilation import Dilated, PoolUser, spread
 from .pool import POSE_RATE, StreamPool
 
 
@@ -61,14 +63,30 @@ class StreamNeeds:
         self.resting = np.zeros(rows, np.bool_)
 
     def update(
-        self, pool: StreamPool, anim: AgentAnimID, transition: Transition, tick: int
+        self,
+        pool: StreamPool,
+        anim: AgentAnimID,
+        transition: Transition,
+        tick: int,
+        *,
+        others: Sequence[PoolUser] = (),
     ) -> Dilated:
         """One pose tick: run what is wanted again, stop what nobody has shown for a while.
 
         Called after agents were put on their rows and before the pool's evaluate. Agents that were
         just put on a resting stream keep the offset that they were given as their target.
+
+        Parameters
+        ----------
+        pool, anim, transition
+            The streams, and who plays them.
+        tick
+            Pose tick.
+        others
+            Columns of parts that play streams of the same pool.
         """
-        shown = self._shown(pool, anim, transition)
+        users = [PoolUser(anim, transition), *others]
+        shown = np.logical_or.reduce([self._shown(pool, *user) for user in users])
         if self._shown_at is None:
             self._shown_at = np.full(len(shown), tick, np.int64)
         self._shown_at[shown] = tick
@@ -79,7 +97,8 @@ class StreamNeeds:
             for row in np.flatnonzero(wake):
                 pool.run(pool.stream(int(row)))
             self.resting[wake] = False
-            total = self._spread(pool, anim, wake, tick)
+            for user in users:
+                total = total.plus(self._spread(pool, user.anim, wake, tick))
         idle = pool.running & ~self._always & (tick - self._shown_at > self._patience)
         for row in np.flatnonzero(idle):
             pool.stop(pool.stream(int(row)))

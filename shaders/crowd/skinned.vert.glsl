@@ -16,6 +16,9 @@ in vec4 weights;
 in vec2 morph;                 // how much the vertex takes part in girth and head
 in uint surface;               // 0 to 4: the agent's colour; 255: the material's
 in uint agent;
+#ifdef HOOKED
+in mat3x4 hook;                // rows from the part's model space to the agent's
+#endif
 
 out vec3 f_place;
 out vec3 f_normal;
@@ -30,6 +33,9 @@ void main()
     int id = int(agent);
     Posture posture = fetch_posture(id);
     mat3x4 rows = skin_matrix(posture, joints, weights);
+#ifdef HOOKED
+    rows = after(hook, rows);
+#endif
     Body body = fetch_body(id);
     vec3 model = transformed(rows, morphed(body, position, normal, morph));
     if (seat.z > 0.0)

@@ -23,6 +23,7 @@ _FROM_SPEC = (
     "streams",
     "history",
     "slots",
+    "props",
     "poses",
     "offsets",
     "seed",
@@ -43,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="METRES",
         help="metres a unit of BVH files, guessed if absent",
     )
-    kinds: dict[str, Any] = {"occupancy": float, "poses": str, "offsets": str}
+    kinds: dict[str, Any] = {"occupancy": float, "props": float, "poses": str, "offsets": str}
     for name in _FROM_SPEC:
         kind = kinds.get(name, int)
         what.add_argument(
