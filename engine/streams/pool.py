@@ -17,12 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..animation.clip_bank import ClipBank
+from ..animation.clip_run import ClipRun
 from ..animation.controllers import Controller
 from ..animation.kinematics import Kinematics
 from ..animation.plan import EvaluationPlan
 from ..animation.skeleton import Skeleton
-from .access import ControllerAccess, Stream
-from .clip_events import ClipRun, StreamEvents
+from .access import ControllerAccess, Stream, check_finite, check_looping, check_motion
+from .clip_events import StreamEvents
 from .markers import Markers
 from .store import PoseStore
 
@@ -32,7 +33,7 @@ POSE_RATE = 30.0
 """Pose ticks a second."""
 
 
-class StreamPool(ControllerAccess):
+class StreamPool(ControllerAccess[Stream]):
     """Streams of one skeleton, with the store of their poses.
 
     Parameters
@@ -173,10 +174,9 @@ class StreamPool(ControllerAccess):
         ValueError
             For an unknown clip or joint, a value that is not finite, or when no row is free.
         """
-        if isinstance(motion, Controller) and looping is not None:
-            raise ValueError("looping is given for a controller; its clips say whether they loop")
-        _check_motion(motion, self.bank)
-        _check_finite(time=time, speed=speed)
+        check_looping(motion, looping)
+        check_motion(motion, self.bank)
+        check_finite(time=time, speed=speed)
         if history is not None:
             self._check_history(history)
         free = np.flatnonzero(~self.alive)
@@ -222,7 +222,7 @@ class StreamPool(ControllerAccess):
         A tree starts anew: state machines in their first state, one-shots idle, and every clip
         `time` seconds after where it begins. Parameters keep their values.
         """
-        _check_finite(time=time)
+        check_finite(time=time)
         row = self.row(stream)
         self.time[row] = time
         if row in self._plan:
@@ -232,8 +232,8 @@ class StreamPool(ControllerAccess):
     def play(self, stream: Stream, motion: int | str | Controller, *, time: float = 0.0) -> None:
         """Put another clip or tree on a stream: a cut. Parameters begin with the tree's values."""
         row = self.row(stream)
-        _check_finite(time=time)
-        _check_motion(motion, self.bank)
+        check_finite(time=time)
+        check_motion(motion, self.bank)
         self._assign(row, motion, time)
         self._cut(row)
 
@@ -253,6 +253,16 @@ class StreamPool(ControllerAccess):
         self._check_history(history)
         self.history_goal[row] = history
         self.history[row] = max(history, int(self.history[row]))
+
+    def row(self, stream: Stream) -> int:
+        """Row of a live stream.
+
+        Raises
+        ------
+        ValueError
+            If the handle is stale or was never this pool's.
+        """
+        return self._index(stream)
 
     def room(self, rows: NDArray[np.int32]) -> NDArray[np.float64]:
         """(K,) longest offsets in poses at which agents may enter stream rows (K,) now."""
@@ -293,6 +303,7 @@ class StreamPool(ControllerAccess):
         before = self.time[rows]
         self.time[rows] += seconds
         pose = workspace.mixed
+        self.clip_events.begin(tick, rows)
         if clips:
             plain = rows[:clips]
             self._wrap_time(plain)
@@ -305,8 +316,8 @@ class StreamPool(ControllerAccess):
                 workspace.scratch[:clips],
             )
         if clips < len(rows):
-            self.clip_events.clear(tick, rows[clips:])
             self._plan.evaluate(rows[clips:], seconds[clips:], pose[clips:])
+            self._record_tree_events(tick)
         whole = in_order and len(rows) == len(self.running)
         target = self.store.ring[self.store.slice_of(tick)]
         workspace.evaluate(pose, target, None if whole else rows)
@@ -363,6 +374,17 @@ class StreamPool(ControllerAccess):
         )
         self.clip_events.record(tick, rows, run)
 
+    def _record_tree_events(self, tick: int) -> None:
+        played, plan = self._plan.played, self._plan
+        if played is not None:
+            starts = played.run.starts | (self.valid[played.stream] == 0)
+            self.clip_events.record(
+                tick,
+                played.stream,
+                played.run._replace(starts=starts),
+                lambda some: plan.shares(played.nodes[some]),
+            )
+
     def _check_history(self, history: int) -> None:
         longest = self.store.capacity - 2
         if not 2 <= history <= longest:
@@ -396,17 +418,3 @@ def bind_positions(skeleton: Skeleton) -> NDArray[np.float32]:
     matrices[:, :3] = skeleton.inverse_bind
     matrices[:, 3, 3] = 1.0
     return np.linalg.inv(matrices)[:, :3, 3].astype(np.float32)
-
-
-def _check_motion(motion: int | str | Controller, bank: ClipBank) -> None:
-    """ValueError for a clip that the bank doesn't have."""
-    if isinstance(motion, str):
-        bank.index(motion)
-    elif not isinstance(motion, Controller) and not 0 <= motion < len(bank.clips):
-        raise ValueError(f"clip is {motion}, expected 0 to {len(bank.clips) - 1}")
-
-
-def _check_finite(**values: float) -> None:
-    for name, value in values.items():
-        if not np.isfinite(value):
-            raise ValueError(f"{name} is {value}, expected a finite number")
