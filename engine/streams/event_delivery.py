@@ -29,17 +29,26 @@ class Delivered(NamedTuple):
     Attributes
     ----------
     agents
-        (K,) int64 ids; an agent that passes two tagged poses, or one name twice, is there twice.
+        (K,) int64 ids; an agent that passes two tagged poses, or one name twice, is there twice,
+        and once for each name that it passes at a pose of a tree.
     bits
         (K,) uint64 names, as in `StreamEvents`.
     weights
         (K,) float32: the share that the motion has in the agent's picture at this tick, 1 without
-        a blend.
+        a blend; in a tree, times the share that the clip had in the pose.
     """
 
     agents: NDArray[np.int64]
     bits: NDArray[np.uint64]
     weights: NDArray[np.float32]
+
+
+class _Hits(NamedTuple):
+    """Agents that pass poses with tags: (K,) ids, the bits, and which pose (`ClipShares.pose`)."""
+
+    agents: NDArray[np.int64]
+    bits: NDArray[np.uint64]
+    pose: NDArray[np.int64]
 
 
 def nothing_delivered() -> Delivered:
@@ -65,25 +74,25 @@ def deliver(
     fading = np.flatnonzero(transition.duration[part] > 0)
     begin, duration = transition.begin[part, fading], transition.duration[part, fading]
     share = blend_weight(begin, duration, float(tick))
-    planes = pool.clip_events.planes
+    planes, shares = pool.clip_events.planes, pool.clip_events.shares
     table = _by_age(pool, tick, planes[0])
     everyone = np.arange(anim.row.shape[1])
     special = np.flatnonzero((anim.rate[part] != 0) | (anim.t0[part] == tick))
-    own = [_passed_at_rest(table, anim.row[part], anim.start[part], everyone, special)]
-    own += _passed(pool, anim, part, special, tick, planes[0])
+    own = [_passed_at_rest(pool, table, anim.row[part], anim.start[part], everyone, special, tick)]
+    own += _passed(pool, anim, part, special, tick, 0)
     leaving = fading[share < 1.0]
     moving = np.flatnonzero(transition.rate[part, leaving])
     row, start = transition.row[part, leaving], transition.start[part, leaving]
-    left = [_passed_at_rest(table, row, start, leaving, moving)]
-    left += _passed(pool, transition, part, leaving[moving], tick, planes[0])
+    left = [_passed_at_rest(pool, table, row, start, leaving, moving, tick)]
+    left += _passed(pool, transition, part, leaving[moving], tick, 0)
     # Whoever passed a name more than once passed it once.
-    for plane in planes[1:]:
-        if plane.any():
-            again = np.unique(np.concatenate([agents for agents, _ in own]))
+    for plane in range(1, len(planes)):
+        if planes[plane].any():
+            again = np.unique(np.concatenate([hits.agents for hits in own]))
             own += _passed(pool, anim, part, again, tick, plane)
             left += _passed(pool, transition, part, leaving, tick, plane)
-    agents, bits = (np.concatenate(column) for column in zip(*own, *left, strict=True))
-    mine = sum(len(some) for some, _ in own)
+    agents, bits, pose = (np.concatenate(column) for column in zip(*own, *left, strict=True))
+    mine = sum(len(hits.agents) for hits in own)
     # Ids ascend, so a place in `fading` is found by bisection.
     weights = np.ones(len(agents), np.float32)
     if len(fading):
@@ -91,18 +100,27 @@ def deliver(
         blends = fading[place] == agents
         weights[blends] = share[place[blends]]
         weights[mine:] = np.float32(1.0) - weights[mine:]
+    if len(shares):
+        place, bit, share = shares.find(pose)
+        plain = np.ones(len(agents), np.bool_)
+        plain[place] = False
+        agents = np.concatenate([agents[plain], agents[place]])
+        bits = np.concatenate([bits[plain], bit])
+        weights = np.concatenate([weights[plain], weights[place] * share])
     order = np.argsort(agents, kind="stable")
     return Delivered(agents[order], bits[order], weights[order])
 
 
 def _passed_at_rest(
+    pool: StreamPool,
     table: NDArray[np.uint64],
     row: NDArray[np.int32],
     offset: NDArray[np.float32],
     agents: NDArray[np.int64],
     but: NDArray[np.int64],
-) -> tuple[NDArray[np.int64], NDArray[np.uint64]]:
-    """Agents and bits for agents at rest on (K,) rows and offsets, without the places in `but`.
+    tick: int,
+) -> _Hits:
+    """What agents at rest on (K,) rows and offsets pass, without the places in `but`.
 
     They pass exactly one pose a tick, ``ceil(o)`` behind the head: one gather.
     """
@@ -116,7 +134,12 @@ def _passed_at_rest(
     hit = np.take(table.ravel() != 0, index, mode="clip")
     hit[but] = False
     hits = np.flatnonzero(hit)
-    return agents[hits], np.take(table.ravel(), index[hits], mode="clip")
+    index = index[hits]
+    age, column = np.divmod(index, width)
+    # Everyone on a stream sees its first pose when it comes.
+    age[pool.valid[column] == 1] = 0
+    pose = pool.clip_events.shares.pose(tick - age, column, 0)
+    return _Hits(agents[hits], np.take(table.ravel(), index), pose)
 
 
 def _by_age(pool: StreamPool, tick: int, plane: NDArray[np.uint64]) -> NDArray[np.uint64]:
@@ -142,9 +165,9 @@ def _passed(
     part: int,
     agents: NDArray[np.int64],
     tick: int,
-    plane: NDArray[np.uint64],
-) -> list[tuple[NDArray[np.int64], NDArray[np.uint64]]]:
-    """Agents and bits for some agents with any offsets: none, one or two poses each."""
+    plane: int,
+) -> list[_Hits]:
+    """What some agents with any offsets pass of a plane: none, one or two poses each."""
     if not len(agents):
         return []
     row = columns.row[part, agents].astype(np.int64)
@@ -166,10 +189,14 @@ def _passed(
     entered = columns.t0[at] == tick
     at_entry = np.maximum(tick - np.floor(now).astype(np.int64), first) - 1
     before = np.where(entered, at_entry, before)
+    events = pool.clip_events
+    bits_of = events.planes[plane]
     result = []
     for step in range(1, int((last - before).max()) + 1):
         some = np.flatnonzero(before + step <= last)
-        bits = plane[(before[some] + step) % len(plane), row[some]]
+        when, where = before[some] + step, row[some]
+        bits = bits_of[when % len(bits_of), where]
         hits = np.flatnonzero(bits)
-        result.append((agents[some[hits]], bits[hits]))
+        pose = events.shares.pose(when[hits], where[hits], plane)
+        result.append(_Hits(agents[some[hits]], bits[hits], pose))
     return result

@@ -1,21 +1,26 @@
 """Uniques: motions that are not shared, so they need no history (*Streams 2017*, 4.1).
 
-A unique plays a clip, or shows poses that the application writes every tick, such as motion that is
-recorded live. It keeps two rows of the pose store, its previous and its current pose, which agents
-mix as they mix two slices of a stream: smooth at any frame rate, and one tick late like streams. An
-unwritten tick holds the pose, and the next one written is blended to from there.
+A unique plays a clip or a tree of controllers, or shows poses that the application writes every
+tick, such as motion that is recorded live. It keeps two rows of the pose store, its previous and
+its current pose, which agents mix as they mix two slices of a stream: smooth at any frame rate, and
+one tick late like streams. An unwritten tick holds the pose, and the next one written is blended to
+from there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..animation.clip_bank import ClipBank
+from ..animation.controllers import Controller
 from ..animation.kinematics import Kinematics
+from ..animation.plan import EvaluationPlan
 from ..animation.pose import CHANNELS, ROTATION, SCALE
+from .access import ControllerAccess, check_finite, check_looping, check_motion
 from .pool import POSE_RATE, StreamPool
 
 _NOTHING, _LOCAL, _PALETTES = 0, 1, 2
@@ -28,8 +33,11 @@ class Unique(NamedTuple):
     generation: int
 
 
-class UniquePool:
+class UniquePool(ControllerAccess[Unique]):
     """Uniques of one skeleton, in the store of a stream pool.
+
+    The parameters of their controllers are set and read as those of streams; where streams are
+    given by their rows, uniques are by their numbers.
 
     Parameters
     ----------
@@ -43,7 +51,8 @@ class UniquePool:
     generation
         (U,) int32: grows when a place is given to another unique.
     clip, time, speed, looping
-        (U,) the clip controller as in `StreamPool`; the clip is -1 where poses are written.
+        (U,) the clip that is played, as in `StreamPool`; the clip is -1 where a tree is played or
+        poses are written.
     before_cut
         Called with the unified row and whether the unique is removed, before its poses are lost.
     """
@@ -53,10 +62,12 @@ class UniquePool:
         "_kinematics",
         "_palettes",
         "_pending",
+        "_plan",
         "_poses",
         "_written",
         "_written_palettes",
         "alive",
+        "bank",
         "before_cut",
         "clip",
         "generation",
@@ -67,9 +78,14 @@ class UniquePool:
         "time",
     )
 
+    _what: ClassVar[str] = "unique"
+    _place: ClassVar[str] = "place"
+
     def __init__(self, pool: StreamPool) -> None:
         count, joints = pool.store.uniques, pool.skeleton.joint_count
         self.pool = pool
+        self.bank: ClipBank = pool.bank
+        self._plan = EvaluationPlan(pool.skeleton, pool.bank)
         self.alive = np.zeros(count, np.bool_)
         self.running = np.zeros(count, np.bool_)
         self.generation = np.zeros(count, np.int32)
@@ -87,7 +103,7 @@ class UniquePool:
 
     def add(
         self,
-        clip: int | str | None = None,
+        motion: int | str | Controller | None = None,
         *,
         time: float = 0.0,
         speed: float = 1.0,
@@ -97,23 +113,23 @@ class UniquePool:
 
         Parameters
         ----------
-        clip
-            Index or name in the bank of the clip to play; None shows what `write` is given.
-        time, speed, looping
-            Of the clip; looping as the clip says if None.
+        motion
+            Index or name of a clip in the bank, or a tree of controllers, to play; None shows what
+            `write` is given.
+        time, speed
+            Seconds since the start of the clip, or of all clips of the tree, and how fast it plays.
+        looping
+            Whether a clip's time wraps at its end; as the clip says if None.
 
         Raises
         ------
         ValueError
-            For an unknown clip, a value that is not finite, or when no place is free.
+            For an unknown clip or joint, a value that is not finite, or when no place is free.
         """
-        bank = self.pool.bank
-        index = bank.index(clip) if isinstance(clip, str) else -1 if clip is None else clip
-        if clip is not None and not 0 <= index < len(bank.clips):
-            raise ValueError(f"clip is {clip}, expected 0 to {len(bank.clips) - 1}")
-        for name, value in (("time", time), ("speed", speed)):
-            if not np.isfinite(value):
-                raise ValueError(f"{name} is {value}, expected a finite number")
+        check_looping(motion, looping)
+        if motion is not None:
+            check_motion(motion, self.bank)
+        check_finite(time=time, speed=speed)
         free = np.flatnonzero(~self.alive)
         if not len(free):
             raise ValueError(
@@ -121,11 +137,12 @@ class UniquePool:
                 "with more"
             )
         k = int(free[0])
+        self._assign(k, motion, time)
         self.alive[k] = True
-        self.running[k] = index >= 0
         self.generation[k] += 1
-        self.clip[k], self.time[k], self.speed[k] = index, time, speed
-        self.looping[k] = (index >= 0 and bank.looping[index]) if looping is None else looping
+        self.speed[k] = speed
+        if looping is not None:
+            self.looping[k] = looping
         self._forget(k)
         return Unique(k, int(self.generation[k]))
 
@@ -134,24 +151,48 @@ class UniquePool:
         k = self._index(unique)
         self._tell(k, removed=True)
         self.alive[k] = self.running[k] = False
+        self._plan.discard(k)
         self._forget(k)
 
     def stop(self, unique: Unique) -> None:
-        """Stop a clip; the agents on it hold."""
+        """Stop a clip or tree; the agents on it hold."""
         self.running[self._index(unique)] = False
 
     def run(self, unique: Unique) -> None:
-        """Let a stopped clip go on."""
+        """Let a stopped clip or tree go on."""
         k = self._index(unique)
-        self.running[k] = self.clip[k] >= 0
+        self.running[k] = self.clip[k] >= 0 or k in self._plan
 
     def seek(self, unique: Unique, time: float) -> None:
-        """Set the clip's time in seconds: a cut, across which no poses are mixed."""
-        if not np.isfinite(time):
-            raise ValueError(f"time is {time}, expected a finite number")
+        """Set the time in seconds: a cut, across which no poses are mixed.
+
+        A tree starts anew, as that of a stream does (`StreamPool.seek`).
+        """
+        check_finite(time=time)
         k = self._index(unique)
         self._tell(k, removed=False)
         self.time[k] = time
+        if k in self._plan:
+            self._plan.seek(k, time)
+        self._forget(k)
+
+    def play(
+        self, unique: Unique, motion: int | str | Controller | None, *, time: float = 0.0
+    ) -> None:
+        """Play another clip or tree, or show what is written: a cut. It runs, at its old speed.
+
+        Raises
+        ------
+        ValueError
+            For a stale handle, an unknown clip or joint, or a time that is not finite; nothing
+            changes then.
+        """
+        k = self._index(unique)
+        check_finite(time=time)
+        if motion is not None:
+            check_motion(motion, self.bank)
+        self._assign(k, motion, time)
+        self._tell(k, removed=False)
         self._forget(k)
 
     def write(self, unique: Unique, pose: NDArray[np.float32]) -> None:
@@ -160,7 +201,7 @@ class UniquePool:
         Parameters
         ----------
         unique
-            One without a clip.
+            One without a clip or controller.
         pose
             (10, J) local pose (`tifo.engine.animation.pose`), its quaternions of any length, or
             (J, 3, 4) palettes.
@@ -168,12 +209,13 @@ class UniquePool:
         Raises
         ------
         ValueError
-            If the handle is stale or plays a clip, or the pose has another shape, values that are
-            not finite, or a quaternion of no length.
+            If the handle is stale or plays something, or the pose has another shape, values that
+            are not finite, or a quaternion of no length.
         """
         k = self._index(unique)
-        if self.clip[k] >= 0:
-            raise ValueError(f"unique {k} plays a clip, its poses can't be written")
+        if self.clip[k] >= 0 or k in self._plan:
+            what = "a clip" if self.clip[k] >= 0 else "a controller"
+            raise ValueError(f"unique {k} plays {what}, its poses can't be written")
         joints = self.pool.skeleton.joint_count
         given = np.asarray(pose)
         if given.shape not in ((CHANNELS, joints), (joints, 3, 4)):
@@ -197,27 +239,19 @@ class UniquePool:
         return self.pool.store.first_unique + 2 * self._index(unique)
 
     def evaluate(self, tick: int) -> None:
-        """Evaluate running clips and written poses together; nobody sees them before `commit`."""
-        playing = np.flatnonzero(self.running)
+        """Evaluate running clips, trees and written poses together; `commit` shows them."""
+        self._evaluated = self._pending = np.zeros(0, np.int64)
+        running = np.flatnonzero(self.running)
+        playing, trees = running[self.clip[running] >= 0], running[self.clip[running] < 0]
         local = np.flatnonzero(self._written == _LOCAL)
+        count = len(running) + len(local)
+        if count:
+            workspace = self._workspace(count)
+            self._play_on(playing, trees, workspace)
+            workspace.mixed[len(running) : count] = self._poses[local]
+            workspace.evaluate(workspace.mixed, self._palettes)
+        self._evaluated = np.concatenate([playing, trees, local])
         self._pending = np.flatnonzero(self._written == _PALETTES)
-        self._evaluated = np.concatenate([playing, local])
-        count = len(self._evaluated)
-        if not count:
-            return
-        workspace = self._workspace(count)
-        if len(playing):
-            self._advance(playing)
-            split = len(playing)
-            self.pool.bank.sample(
-                self.clip[playing],
-                self.time[playing],
-                self.looping[playing],
-                workspace.mixed[:split],
-                workspace.scratch[:split],
-            )
-        workspace.mixed[len(playing) : count] = self._poses[local]
-        workspace.evaluate(workspace.mixed, self._palettes)
 
     def commit(self, tick: int) -> None:
         """Make what was evaluated and written the current poses of pose tick `tick`."""
@@ -240,13 +274,32 @@ class UniquePool:
         store.write_static(rows, palettes, self.pool.markers.places(palettes))
         store.mark_streams()
 
-    def _advance(self, who: NDArray[np.int64]) -> None:
-        """A clip's first pose after a cut is the pose at its time; later ones have advanced."""
+    def _play_on(
+        self, playing: NDArray[np.int64], trees: NDArray[np.int64], workspace: Kinematics
+    ) -> None:
+        """Let clips and trees go on, and put their poses first.
+
+        The first pose after a cut is the one at their time; later ones have advanced.
+        """
+        who = np.concatenate([playing, trees])
         advanced = self.pool.store.unique_valid[who] > 0
-        self.time[who] += np.where(advanced, self.speed[who] / POSE_RATE, 0.0)
-        duration = self.pool.bank.duration[self.clip[who]]
-        wrap = self.looping[who] & (duration > 0)
-        self.time[who[wrap]] = np.mod(self.time[who[wrap]], duration[wrap])
+        seconds = np.where(advanced, self.speed[who] / POSE_RATE, 0.0)
+        self.time[who] += seconds
+        split = len(playing)
+        if len(trees):
+            self._plan.evaluate(trees, seconds[split:], workspace.mixed[split : len(who)])
+        if len(playing):
+            clip, looping = self.clip[playing], self.looping[playing]
+            duration = self.bank.duration[clip]
+            wrap = looping & (duration > 0)
+            self.time[playing[wrap]] = np.mod(self.time[playing[wrap]], duration[wrap])
+            self.bank.sample(
+                clip,
+                self.time[playing],
+                looping,
+                workspace.mixed[:split],
+                workspace.scratch[:split],
+            )
 
     def _workspace(self, count: int) -> Kinematics:
         """Room for at least `count` poses; what is beyond them is evaluated in vain."""
@@ -258,13 +311,18 @@ class UniquePool:
             self._palettes = np.zeros((room, *self._palettes.shape[1:]), np.float32)
         return self._kinematics
 
-    def _index(self, unique: Unique) -> int:
-        k = unique.number
-        if not 0 <= k < len(self.alive) or not self.alive[k]:
-            raise ValueError(f"unique {k} is not alive")
-        if unique.generation != self.generation[k]:
-            raise ValueError(f"unique {k} was removed and its place given to another")
-        return k
+    def _assign(self, k: int, motion: int | str | Controller | None, time: float) -> None:
+        """Give a place what it plays; nothing changes if that can't be evaluated."""
+        if isinstance(motion, Controller):
+            self._plan.add(k, motion, time)
+            self.clip[k], self.looping[k] = -1, False
+        else:
+            self._plan.discard(k)
+            index = self.bank.index(motion) if isinstance(motion, str) else motion
+            self.clip[k] = -1 if index is None else index
+            self.looping[k] = index is not None and self.bank.looping[index]
+        self.time[k] = time
+        self.running[k] = motion is not None
 
     def _tell(self, k: int, *, removed: bool) -> None:
         for hook in self.before_cut:

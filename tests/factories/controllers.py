@@ -49,6 +49,8 @@ class Reference:
                 node.time += time
 
     def tick(self, delta: float) -> Pose:
+        for node in self.root.below():
+            node.played = None
         self.root.step(delta)
         return self.root.pose()
 
@@ -74,6 +76,9 @@ class RefNode:
         for place, child in kind.children():
             name = place if machine else (child.name or place)
             self.children.append(RefNode(tree, child, f"{path}/{name}" if path else name))
+        self.share = 1.0  # of the tree's pose, where it was seen
+        self.played: tuple[bool, float, float] | None = None
+        """Of a clip seen in this tick: whether it started, its time before, and its step."""
         self._declare()
         self.restart()
 
@@ -150,6 +155,7 @@ class RefNode:
         scale = self.value("scale") if isinstance(kind, TimeScale) else 1.0
         for child, weight in zip(self.children, self.weights, strict=True):
             if weight > 1e-6:
+                child.share = self.share * weight
                 child.step(delta * scale)
 
     def shares(self) -> list[float]:
@@ -174,6 +180,7 @@ class RefNode:
 
     def _play(self, step: float) -> None:
         duration = self.clip.duration
+        self.played = (self.restarted, self.time, step)
         self.time += step
         if self.loops and duration > 0:
             self.ended = not 0 <= self.time < duration

@@ -30,6 +30,7 @@ from .evaluate import MAKE, WORK_OF, Work, advance_clips
 from .groups import Groups, Members, members_by
 from .machines import clip_phases
 from .mixing import PoseMixer
+from .played import PlayedClips, played_clips, shares, tagged_clips
 from .tables import Offsets, Tables
 from .weights import BY_LEVEL, STEPS, step_level
 
@@ -73,6 +74,12 @@ class EvaluationPlan:
     ----------
     skeleton, bank
         What the trees animate, and the clips that they play.
+
+    Attributes
+    ----------
+    played
+        The clips with tags that were seen at the last tick, and how they moved; None if there
+        were none.
     """
 
     __slots__ = (
@@ -85,6 +92,7 @@ class EvaluationPlan:
         "_shared",
         "_up",
         "_values",
+        "played",
         "tables",
     )
 
@@ -96,6 +104,7 @@ class EvaluationPlan:
         self._up = Groups()
         self._shared: dict[int, _Shared] = {}
         self._numbers = count()
+        self.played: PlayedClips | None = None
         # By stream row: first node (-1 without a tree), first value, and number of the program.
         self._base = np.zeros(0, np.int64)
         self._values = np.zeros(0, np.int64)
@@ -104,6 +113,11 @@ class EvaluationPlan:
     def __contains__(self, stream: int) -> bool:
         """Whether a stream row has a tree."""
         return stream < len(self._base) and bool(self._base[stream] >= 0)
+
+    def have_trees(self, streams: Ints) -> NDArray[np.bool_]:
+        """(n,) whether each of some stream rows has a tree."""
+        base = np.append(self._base, -1)
+        return base[np.minimum(streams, len(self._base))] >= 0
 
     def add(self, stream: int, controller: Controller, time: float = 0.0) -> None:
         """Give a stream row a tree, instead of the one that it may have.
@@ -189,6 +203,7 @@ class EvaluationPlan:
         """
         tables, columns, mixer = self.tables, self.tables.nodes, self._mixer
         roots = self._base[streams]
+        self.played = None
         active = columns["active"]
         active[: columns.end] = False
         active[roots] = True
@@ -200,12 +215,20 @@ class EvaluationPlan:
                 STEPS[kind](tables, group)
         clips = self._up.get((0, Work.SAMPLE))
         if clips is not None:
+            tagged = tagged_clips(tables, clips)
+            before = columns["time"][tagged]
             advance_clips(tables, clips)
+            if len(tagged):
+                self.played = played_clips(tables, tagged, before)
         mixer.clear()
         for (_, work), group in self._up.in_order():
             MAKE[work](tables, mixer, group, self._customs)
         columns["restarted"][: columns.end] &= ~active[: columns.end]
         np.take(mixer.poses, columns["row"][roots], axis=0, out=out, mode="clip")
+
+    def shares(self, nodes: Ints) -> NDArray[np.float64]:
+        """Shares (n,) of nodes, seen at the last tick, in the poses of their trees."""
+        return shares(self.tables, nodes)
 
     def phase(self, streams: Ints) -> NDArray[np.float64]:
         """Phase, 0 to 1, of the clip that each tree shows most of; 0 where that is no clip."""

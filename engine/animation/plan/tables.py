@@ -61,13 +61,16 @@ class Tables:
         Where its pose of this tick is in the mixer's block.
     ``stream``
         Row of its stream.
+
+    Beside the columns, ``tagged`` says which clips of the bank have tags.
     """
 
-    __slots__ = ("bank", "children", "constants", "nodes", "skeleton", "values")
+    __slots__ = ("bank", "children", "constants", "nodes", "skeleton", "tagged", "values")
 
     def __init__(self, skeleton: Skeleton, bank: ClipBank) -> None:
         self.skeleton = skeleton
         self.bank = bank
+        self.tagged = np.array([bool(clip.events) for clip in bank.clips])
         whole, number, flag = np.int64, np.float64, np.bool_
         self.nodes = Columns(
             kind=whole, depth=whole, height=whole, size=whole, parent=whole,

@@ -11,6 +11,7 @@ import pytest
 from tifo.components import AgentAnimID
 from tifo.engine.animation import ClipBank
 from tifo.engine.animation.body_type import BodyType
+from tifo.engine.animation.clip import ClipEvent
 from tifo.engine.animation.controllers import Blend2, ClipNode
 from tifo.engine.streams import Stream, StreamPool
 from tifo.engine.streams.displayed import read_palettes, shown_poses
@@ -132,3 +133,35 @@ def test_twins_that_cannot_be(pool: StreamPool) -> None:
         BodyType("x", np.array([1.0, 0.0], np.float32), np.ones(2, np.float32))
     with pytest.raises(ValueError, match="2 bones"):
         BodyType("x", np.ones(2, np.float32), np.ones(2, np.float32)).refit(pool.skeleton)
+
+
+def test_a_twin_passes_the_events_of_its_streams_tree(factories: ModuleType) -> None:
+    from dataclasses import replace
+
+    character = factories.make_character()
+    tags = (ClipEvent(0.1, "step"), ClipEvent(0.3, "step"), ClipEvent(0.2, "clap"))
+    clips = tuple(replace(clip, events=tags) for clip in character.clips[:3])
+    kinds = (BodyType("child", *np.ones((2, 7), np.float32)),)
+    pool = StreamPool(
+        character.skeleton, ClipBank(character.skeleton, clips), capacity=6, history=8, bodies=kinds
+    )
+    trees = [pool.add(Blend2(ClipNode("walk"), ClipNode("sit_idle"), amount=0.3)) for _ in range(2)]
+    plain = pool.add("sit_idle_2")
+    twins = [pool.add_twin(stream, "child") for stream in (trees[1], plain, trees[0])]
+    events = pool.clip_events
+    passed = 0
+    for tick in range(1, 15):
+        run(pool, tick, tick)
+        for own, twin in zip((trees[1], plain, trees[0]), twins, strict=True):
+            slot = tick % events.planes.shape[1]
+            np.testing.assert_array_equal(
+                events.planes[:, slot, own.row], events.planes[:, slot, twin.row]
+            )
+            found = [
+                events.shares.find(events.shares.pose(tick, np.array([stream.row]), 0))[1:]
+                for stream in (own, twin)
+            ]
+            np.testing.assert_array_equal(found[0], found[1])
+            passed += len(found[0][0])
+    # Two trees, whose clips pass a clap and two steps: each name is found once or twice.
+    assert passed >= 6

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from trees import CLIPS, STATES, states, transitions
 
 from tifo.engine.animation.controllers import (
     Blend2,
@@ -16,13 +17,9 @@ from tifo.engine.animation.controllers import (
     OneShot,
     OneShotRequest,
     StateMachine,
-    TimeScale,
     Transition,
 )
 from tifo.engine.streams import Stream, StreamPool
-
-CLIPS = tuple(f"move {number}" for number in range(6))
-STATES = ("a", "b", "c", "d")
 
 
 class Run:
@@ -287,38 +284,6 @@ def test_a_seek_starts_machines_and_one_shots_anew_and_keeps_parameters(stage: A
     assert (run.get("base/current"), run.get("active")) == ("b", True)
     run.pool.seek(run.stream, 0.1)
     assert (run.get("base/current"), run.get("active"), run.get("base/x")) == ("a", False, 3.0)
-
-
-def states() -> st.SearchStrategy[Controller]:
-    clip = st.builds(
-        ClipNode,
-        st.sampled_from(CLIPS),
-        speed=st.sampled_from([1.0, 2.0, -1.0]),
-        loop=st.sampled_from([None, True, False]),
-        phase=st.sampled_from([0.0, 0.5]),
-    )
-    leaf = clip | st.builds(Blend2, clip, clip, st.sampled_from([0.0, 0.25, 0.75]))
-    shot = st.builds(
-        OneShot, clip, leaf, st.sampled_from([0.0, 0.11]), st.sampled_from([0.0, 0.17])
-    )
-    return leaf | shot | st.builds(TimeScale, leaf, st.sampled_from([2.0, -1.0]))
-
-
-def transitions() -> st.SearchStrategy[list[Transition]]:
-    way = st.builds(
-        Transition,
-        st.sampled_from(("*", *STATES)),
-        st.sampled_from(STATES),
-        trigger=st.sampled_from(["", "t", "u"]),
-        when=st.sampled_from(["", "x", "not x", "y > 0.5", "y <= 0.5"]),
-        at_end=st.booleans(),
-        duration=st.sampled_from([0.0, 0.07, 0.2]),
-        curve=st.sampled_from(["linear", "smooth"]),
-        sync=st.booleans(),
-        priority=st.integers(0, 2),
-        interrupt=st.sampled_from(["any", "priority", "none"]),
-    )
-    return st.lists(way, max_size=8)
 
 
 @settings(
