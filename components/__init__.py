@@ -6,8 +6,10 @@ and is never reused. Nothing here knows of systems, engines or drawing.
 
 from .animation import AgentAnimID, BakedAnim, Transition
 from .appearance import Appearance
+from .behaviour import Behaviour
 from .detail import Detail, Level
 from .dilation import Dilation, DilationRequest
+from .emotion import Emotion
 from .motion import MotionState
 from .placement import Placement
 from .seat import Seat, Section
@@ -18,9 +20,11 @@ __all__ = [
     "AgentAnimID",
     "Appearance",
     "BakedAnim",
+    "Behaviour",
     "Detail",
     "Dilation",
     "DilationRequest",
+    "Emotion",
     "Level",
     "MotionState",
     "Placement",

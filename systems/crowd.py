@@ -14,9 +14,11 @@ from ..components import (
     AgentAnimID,
     Appearance,
     BakedAnim,
+    Behaviour,
     Detail,
     Dilation,
     DilationRequest,
+    Emotion,
     MotionState,
     Placement,
     Seat,
@@ -24,7 +26,9 @@ from ..components import (
     Transition,
 )
 from ..engine.assets.character import Character
+from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.events import Event, EventQueue
+from ..engine.behaviour.guidance import Guidance
 from ..engine.crowd.agents import agent_ids, agent_values
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.seating import SeatPlan
@@ -36,6 +40,7 @@ from ..engine.streams.event_feed import ClipEventFeed, Listener
 from ..engine.streams.ladder import BlendLadder, Focus
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
+from .guiding import Guiding
 
 BLEND_SECONDS = 0.4
 """Length of a blend that nobody chose."""
@@ -44,7 +49,7 @@ FOCUS_RADIUS = 60.0
 
 
 @dataclass(slots=True, eq=False)
-class Crowd:
+class Crowd(Guiding):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -55,6 +60,8 @@ class Crowd:
         What it was made from.
     seat, placement, team, appearance, motion, detail, library, events
         The components that every crowd has.
+    emotion, behaviour, table, guidance
+        Feelings, states, the behaviour table as it is used, and orders.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
     dilation
@@ -77,6 +84,10 @@ class Crowd:
     detail: Detail
     library: MotionLibrary
     events: EventQueue
+    emotion: Emotion
+    behaviour: Behaviour
+    table: CompiledTable
+    guidance: Guidance
     pool: StreamPool | None = None
     anim: AgentAnimID | None = None
     transition: Transition | None = None
@@ -320,6 +331,7 @@ class Crowd:
         """Digest of everything that the simulation decided; equal for equal seeds and inputs."""
         digest = hashlib.blake2b(digest_size=16)
         components: list[Any] = [self.motion, self.seat, self.team, self.placement]
+        components += [self.emotion, self.behaviour]
         clips = self.baked[1] if self.baked else None
         components += [part for part in (self.anim, self.transition, clips) if part is not None]
         for component in components:

@@ -8,12 +8,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .components import AgentAnimID, Appearance, MotionState, Placement, Seat, Team, View
+from .components import (
+    AgentAnimID,
+    Appearance,
+    Behaviour,
+    Emotion,
+    MotionState,
+    Placement,
+    Seat,
+    Team,
+    View,
+)
 from .engine.animation import controllers
 from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh
 from .engine.assets.load import add_motions, load_character
 from .engine.assets.spectator import builtin_spectator
+from .engine.behaviour import BehaviourTable, load_table
 from .engine.behaviour.events import BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
@@ -40,12 +51,15 @@ __all__ = [
     "Appearance",
     "AssetError",
     "BallHit",
+    "Behaviour",
+    "BehaviourTable",
     "CameraMode",
     "Character",
     "ClipEvent",
     "Clock",
     "Crowd",
     "CrowdSpec",
+    "Emotion",
     "Event",
     "FreeCamera",
     "Goal",
@@ -74,6 +88,7 @@ __all__ = [
     "character_of",
     "controllers",
     "load_character",
+    "load_table",
     "open_window",
     "pick_seat",
     "spawn_crowd",

@@ -20,6 +20,9 @@ _FROM_SPEC = (
     "columns",
     "occupancy",
     "sides",
+    "ultras",
+    "behaviour",
+    "embarrassment",
     "streams",
     "history",
     "slots",
@@ -43,7 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="METRES",
         help="metres a unit of BVH files, guessed if absent",
     )
-    kinds: dict[str, Any] = {"occupancy": float, "poses": str, "offsets": str}
+    kinds: dict[str, Any] = {"occupancy": float, "ultras": float, "embarrassment": float}
+    kinds.update({"poses": str, "offsets": str, "behaviour": str})
     for name in _FROM_SPEC:
         kind = kinds.get(name, int)
         what.add_argument(
