@@ -7,9 +7,11 @@ and is never reused. Nothing here knows of systems, engines or drawing.
 from .animation import AgentAnimID, BakedAnim, Transition
 from .appearance import Appearance
 from .attachment import MOST_PARTS, Attachment, PartBits
+from .behaviour import Behaviour
 from .body import Body
 from .detail import Detail, Level
 from .dilation import Dilation, DilationRequest
+from .emotion import Emotion
 from .motion import MotionState
 from .overlays import Overlays
 from .placement import Placement
@@ -23,10 +25,12 @@ __all__ = [
     "Appearance",
     "Attachment",
     "BakedAnim",
+    "Behaviour",
     "Body",
     "Detail",
     "Dilation",
     "DilationRequest",
+    "Emotion",
     "Level",
     "MotionState",
     "Overlays",

@@ -1,4 +1,4 @@
-"""Which motion an agent wants, and what it will want next."""
+"""Which motion an agent wants, and which it shows."""
 
 from __future__ import annotations
 
@@ -21,12 +21,6 @@ class MotionState:
         (N,) int16 what the agent wants to do now.
     shown
         (N,) int16 what its stream shows, or is blending to.
-    innate
-        (N,) int16 what it does when nothing happens.
-    reaction
-        (N,) int16 what it will do at `react_at`.
-    react_at, calm_at
-        (N,) int32 pose ticks at which the reaction begins and ends; NEVER if none is due.
     busy_until
         (N,) int32 pose tick until which the agent keeps what it shows, whatever it wants: it is
         getting up or sitting down.
@@ -36,24 +30,16 @@ class MotionState:
 
     wanted: NDArray[np.int16]
     shown: NDArray[np.int16]
-    innate: NDArray[np.int16]
-    reaction: NDArray[np.int16]
-    react_at: NDArray[np.int32]
-    calm_at: NDArray[np.int32]
     busy_until: NDArray[np.int32]
     blend: NDArray[np.float32]
 
     @classmethod
-    def allocate(cls, innate: NDArray[np.int16]) -> MotionState:
-        """Everyone shows its innate motion and nothing is due."""
-        count = len(innate)
+    def allocate(cls, motion: NDArray[np.int16]) -> MotionState:
+        """Everyone shows its motion and wants no other."""
+        count = len(motion)
         return cls(
-            wanted=innate.copy(),
-            shown=innate.copy(),
-            innate=innate.copy(),
-            reaction=innate.copy(),
-            react_at=np.full(count, NEVER, np.int32),
-            calm_at=np.full(count, NEVER, np.int32),
+            wanted=motion.copy(),
+            shown=motion.copy(),
             busy_until=np.zeros(count, np.int32),
             blend=np.full(count, 12.0, np.float32),
         )

@@ -17,7 +17,7 @@ def main() -> None:
         if second == 2:
             simulation.send(tifo.Goal(side=0))
         simulation.run(seconds=1.0)
-        reacting = crowd.motion.wanted != crowd.motion.innate
+        reacting = crowd.behaviour.reacting
         home, away = (np.mean(reacting[crowd.team.side == side]) for side in (0, 1))
         print(f"{second + 1:2d} s  home {home:4.0%}  away {away:4.0%}")
     simulation.close()

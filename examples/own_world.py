@@ -26,9 +26,8 @@ class ThirstSystem(esper.Processor):
 
     def process(self, delta: float) -> None:
         """One frame."""
-        for _, (thirst, motion) in esper.get_components(Thirst, tifo.MotionState):
-            busy = motion.wanted != motion.innate
-            thirst.level += np.where(busy, 0.05, 0.01).astype(np.float32) * delta
+        for _, (thirst, behaviour) in esper.get_components(Thirst, tifo.Behaviour):
+            thirst.level += np.where(behaviour.reacting, 0.05, 0.01).astype(np.float32) * delta
 
 
 def main() -> None:

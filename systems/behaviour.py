@@ -1,20 +1,30 @@
-"""Events and innate wishes become the motion that each agent wants."""
+"""Events, feelings, states and orders become the motion that each agent wants."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import esper
 import numpy as np
 
-from ..components import MotionState, Placement, Seat, Team
-from ..engine.behaviour import answer_event, settle, wander
+from ..components import Behaviour, Emotion, MotionState, Placement, Seat, Team
+from ..engine.behaviour.compiled import CompiledTable
+from ..engine.behaviour.display import motions_to_show
+from ..engine.behaviour.emotion import relax
 from ..engine.behaviour.events import EventQueue
+from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.machine import step, union
+from ..engine.behaviour.responses import respond
 from ..engine.clock import Clock
-from ..engine.crowd.motions import MotionLibrary
+from ..engine.streams.pool import POSE_RATE
 from .query import crowds
+
+GUIDED_BLEND = 12.0
+"""Pose ticks in which an order takes effect or ends."""
 
 
 class BehaviourSystem(esper.Processor):
-    """Answers queued events and lets agents at rest change what they do.
+    """Answers the events that are due, and lets agents whose stay in a state ends move on.
 
     Parameters
     ----------
@@ -29,12 +39,61 @@ class BehaviourSystem(esper.Processor):
         """One base tick; works at pose ticks."""
         if not clock.is_pose_tick:
             return
-        tick = clock.pose_tick
-        for entity, (state, library, queue) in crowds(MotionState, MotionLibrary, EventQueue):
-            team = esper.component_for_entity(entity, Team)
-            placement = esper.component_for_entity(entity, Placement)
-            present = esper.component_for_entity(entity, Seat).occupied
-            for event in queue.take():
-                answer_event(event, state, team, placement, present, library, tick, self._rng)
-            wander(state, library, self._rng)
-            settle(state, tick)
+        for entity, (behaviour, table, motion) in crowds(Behaviour, CompiledTable, MotionState):
+            self._step(entity, behaviour, table, motion, clock.pose_tick)
+
+    def _step(
+        self,
+        entity: int,
+        behaviour: Behaviour,
+        table: CompiledTable,
+        motion: MotionState,
+        tick: int,
+    ) -> None:
+        def component(kind: type[Any]) -> Any:
+            return esper.component_for_entity(entity, kind)
+
+        emotion, team = component(Emotion), component(Team)
+        for event in component(EventQueue).take(tick / POSE_RATE):
+            respond(
+                event,
+                table,
+                behaviour,
+                emotion,
+                team,
+                component(Placement),
+                component(Seat).occupied,
+                tick,
+                self._rng,
+            )
+        relax(emotion, tick, behaviour.reacting)
+        changed = step(
+            table,
+            behaviour,
+            columns_of(behaviour, emotion, team),
+            tick,
+            self._rng,
+            held_until=motion.busy_until,
+            blend=motion.blend,
+        )
+        guidance = component(Guidance)
+        told = guidance.step(tick, behaviour)
+        if len(told):
+            motion.blend[told] = GUIDED_BLEND
+            changed = union([changed, told], len(motion.wanted))
+        if len(changed):
+            motion.wanted[changed] = motions_to_show(
+                table, behaviour, guidance, changed, motion.wanted
+            )
+
+
+def columns_of(behaviour: Behaviour, emotion: Emotion, team: Team) -> dict[str, Any]:
+    """What the rules of a table may ask for."""
+    return {
+        **behaviour.signals,
+        "excitement": emotion.excitement,
+        "embarrassment": emotion.embarrassment,
+        "mood": emotion.mood,
+        "fatigue": emotion.fatigue,
+        "fervour": team.fervour,
+    }

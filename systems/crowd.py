@@ -14,9 +14,11 @@ from ..components import (
     AgentAnimID,
     Appearance,
     BakedAnim,
+    Behaviour,
     Body,
     Detail,
     Dilation,
+    Emotion,
     MotionState,
     Placement,
     Seat,
@@ -24,7 +26,9 @@ from ..components import (
     Transition,
 )
 from ..engine.assets.character import Character
+from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.events import Event, EventQueue
+from ..engine.behaviour.guidance import Guidance
 from ..engine.crowd.agents import agent_ids
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.physique import Physique
@@ -41,6 +45,7 @@ from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
 from .crowd_overlays import BLEND_SECONDS, OverlayCalls
+from .guiding import Guiding
 
 if TYPE_CHECKING:
     from .part import Part
@@ -50,7 +55,7 @@ FOCUS_RADIUS = 60.0
 
 
 @dataclass(slots=True, eq=False)
-class Crowd(OverlayCalls):
+class Crowd(OverlayCalls, Guiding):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -61,6 +66,8 @@ class Crowd(OverlayCalls):
         What it was made from.
     seat, placement, body, team, appearance, motion, detail, library, events, overrides
         The components that every crowd has.
+    emotion, behaviour, table, guidance
+        Feelings, states, the behaviour table as it is used, and orders.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
     overlays
@@ -91,6 +98,10 @@ class Crowd(OverlayCalls):
     library: MotionLibrary
     events: EventQueue
     overrides: OverrideSet
+    emotion: Emotion
+    behaviour: Behaviour
+    table: CompiledTable
+    guidance: Guidance
     pool: StreamPool | None = None
     anim: AgentAnimID | None = None
     transition: Transition | None = None
@@ -340,6 +351,7 @@ class Crowd(OverlayCalls):
         """Digest of everything that the simulation decided; equal for equal seeds and inputs."""
         digest = hashlib.blake2b(digest_size=16)
         components: list[Any] = [self.motion, self.seat, self.team, self.placement, self.body]
+        components += [self.emotion, self.behaviour]
         clips = self.baked[1] if self.baked else None
         overlays = self.overlays.columns if self.overlays else None
         columns = (self.anim, self.transition, overlays, clips)

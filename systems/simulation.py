@@ -55,8 +55,8 @@ class Simulation:
     >>> simulation = Simulation(CrowdSpec(seats=500))
     >>> simulation.send(Goal(side=0))
     >>> simulation.run(seconds=2.0)
-    >>> int((simulation.crowd.motion.wanted != simulation.crowd.motion.innate).sum())
-    441
+    >>> int(simulation.crowd.behaviour.reacting.sum())
+    473
     """
 
     def __init__(

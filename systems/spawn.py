@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..components import (
     AgentAnimID,
     BakedAnim,
+    Behaviour,
     Detail,
     MotionState,
     Overlays,
@@ -23,14 +24,20 @@ from ..components import (
 from ..engine.animation.clip import rest_clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
+from ..engine.behaviour.compiled import compile_table
+from ..engine.behaviour.display import motions_to_show
+from ..engine.behaviour.emotion import draw_emotion
 from ..engine.behaviour.events import EventQueue
+from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.machine import settle
+from ..engine.behaviour.table_file import load_table
 from ..engine.crowd.body_types import make_body_types
 from ..engine.crowd.builds import draw_bodies
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
 from ..engine.crowd.figure_masks import figure_masks
-from ..engine.crowd.motions import sort_motions, start_streams
-from ..engine.crowd.occupancy import assign_sides, occupancy_mask
+from ..engine.crowd.motions import Role, sort_motions, start_streams
+from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
@@ -47,6 +54,7 @@ from ..engine.streams.pool import StreamPool
 from ..engine.streams.slots import SlotPool
 from ..engine.streams.stream_needs import StreamNeeds
 from ..engine.streams.uniques import UniquePool
+from .behaviour import columns_of
 from .crowd import Crowd
 
 SPECTATOR_HEIGHT = 1.75
@@ -73,8 +81,8 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(6)
-    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies = map(
+    seeds = np.random.SeedSequence(spec.seed).spawn(7)
+    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds = map(
         np.random.default_rng, seeds
     )
     clips = character.clips or (rest_clip(character.skeleton),)
@@ -89,6 +97,14 @@ def spawn_crowd(
     side = assign_sides(plan, spec, rng_sides)
     count = plan.count
     body, size = draw_bodies(count, spec.children, spec.old, figure.height, rng_bodies)
+    team = Team(side, draw_fervour(side, spec, rng_deeds))
+    emotion = draw_emotion(team.fervour, spec.embarrassment, rng_deeds)
+    table = compile_table(load_table(spec.behaviour), library)
+    behaviour = Behaviour.allocate(len(table.starts), count)
+    settle(table, behaviour, columns_of(behaviour, emotion, team), rng_deeds)
+    guidance = Guidance(count, len(table.names), rng_deeds)
+    calm = library.draw(Role.CALM, count, rng_motion)
+    shown = motions_to_show(table, behaviour, guidance, np.arange(count), calm)
     crowd = Crowd(
         entity=0,
         spec=spec,
@@ -97,9 +113,13 @@ def spawn_crowd(
         seat=Seat(plan.row, plan.column, plan.section, occupied),
         placement=_place(plan, figure, size, rng_place),
         body=body,
-        team=Team(side),
+        team=team,
         appearance=draw_appearance(side, rng_looks),
-        motion=MotionState.allocate(library.draw_innate(count, rng_motion)),
+        motion=MotionState.allocate(shown),
+        emotion=emotion,
+        behaviour=behaviour,
+        table=table,
+        guidance=guidance,
         detail=Detail(),
         library=library,
         events=EventQueue(),
@@ -116,6 +136,10 @@ def spawn_crowd(
         crowd.library,
         crowd.events,
         crowd.overrides,
+        emotion,
+        behaviour,
+        table,
+        guidance,
         figure,
         character,
     )

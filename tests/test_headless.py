@@ -54,13 +54,12 @@ from tifo.engine.crowd.spec import CrowdSpec
 from tifo.engine.behaviour.events import Goal
 
 simulation = Simulation(CrowdSpec(seats=200, occupancy=1.0, neutrals=0.0, streams=16, seed=3))
-calm = simulation.crowd.motion.wanted.copy()
 ticks = simulation.clock.tick
 simulation.run(seconds=1.0)
 simulation.send(Goal(side=0))
 simulation.run(seconds=1.0)
 print(simulation.clock.tick - ticks)
-print(len(calm), int((simulation.crowd.motion.wanted != calm).sum()))
+print(len(simulation.crowd), int(simulation.crowd.behaviour.reacting.sum()))
 print("pyglet" in sys.modules)
 simulation.close()
 """

@@ -52,6 +52,8 @@ def tree_files() -> set[str]:
         found.add(f"tifo/shaders/{path.relative_to(shaders).as_posix()}")
     for path in folder_of("tifo.engine").rglob("*.glb"):
         found.add(f"tifo/engine/{path.relative_to(folder_of('tifo.engine')).as_posix()}")
+    for path in (folder_of("tifo.engine.behaviour") / "tables").glob("*.toml"):
+        found.add(f"tifo/engine/behaviour/tables/{path.name}")
     return found | {"tifo/py.typed"}
 
 

@@ -8,7 +8,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .components import AgentAnimID, Appearance, MotionState, Placement, Seat, Team, View
+from .components import (
+    AgentAnimID,
+    Appearance,
+    Behaviour,
+    Emotion,
+    MotionState,
+    Placement,
+    Seat,
+    Team,
+    View,
+)
 from .engine.animation import controllers
 from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh
@@ -27,6 +37,7 @@ from .engine.assets.retarget import (
     trim_clip,
 )
 from .engine.assets.spectator import builtin_spectator
+from .engine.behaviour import BehaviourTable, load_table
 from .engine.behaviour.events import BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
@@ -93,6 +104,8 @@ __all__ = [
     "Appearance",
     "AssetError",
     "BallHit",
+    "Behaviour",
+    "BehaviourTable",
     "CameraMode",
     "Character",
     "ClipEvent",
@@ -100,6 +113,7 @@ __all__ = [
     "Crowd",
     "CrowdSpec",
     "Ease",
+    "Emotion",
     "Event",
     "Export",
     "FreeCamera",
@@ -181,6 +195,7 @@ __all__ = [
     "load_character",
     "load_motions",
     "load_scene",
+    "load_table",
     "look_at",
     "loop_clip",
     "mirror_clip",

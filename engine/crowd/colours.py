@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from ...components.appearance import Appearance
 
-TEAM_COLOURS: tuple[tuple[int, int, int], tuple[int, int, int]] = ((198, 30, 45), (36, 84, 176))
-"""sRGB of the home and the away side."""
+TEAM_COLOURS: tuple[tuple[int, int, int], ...] = (
+    *((198, 30, 45), (36, 84, 176), (238, 190, 40), (30, 130, 76)),
+    *((232, 116, 34), (112, 52, 148), (64, 178, 200), (236, 96, 166)),
+)
+"""sRGB of the home and the away side, and of further ones."""
 
 _SKIN = np.array(
     [
@@ -61,7 +64,7 @@ def draw_appearance(
     Parameters
     ----------
     side
-        (N,) 0 home, 1 away, -1 neutral.
+        (N,) 0 home, 1 away, further sides, -1 neutral.
     rng
         Where choices come from.
     fervour

@@ -75,19 +75,40 @@ def occupancy_mask(plan: SeatPlan, spec: CrowdSpec, rng: np.random.Generator) ->
 
 
 def assign_sides(plan: SeatPlan, spec: CrowdSpec, rng: np.random.Generator) -> NDArray[np.int8]:
-    """(N,) int8 side of each seat's spectator: 0 home, 1 away, -1 neutral.
+    """(N,) int8 side of each seat's spectator: 0 home, 1 away, further sides, -1 neutral.
 
-    With 2 sides, `spec.away_share` of the seats are one block of neighbouring sections at the end
-    of the far stand (a section that is needed in part is cut from front to back). The share
-    `spec.neutrals` of all seats, drawn at random outside the block, is neutral.
+    With an away block, `spec.away_share` of the seats are neighbouring sections at the end of the
+    far stand (a section that is needed in part is cut from front to back), and the share
+    `spec.neutrals` of all seats, drawn at random outside the block, is neutral. Several visiting
+    sides divide the block among them. Mixed sides and equal blocks have neutrals everywhere.
     """
     sides = np.full(plan.count, HOME, dtype=np.int8)
-    if spec.sides == 2:
-        sides[away_block(plan, round(spec.away_share * plan.count))] = AWAY
-    others = np.flatnonzero(sides == HOME)
+    if spec.sides > 1 and spec.fans == "mixed":
+        sides[:] = rng.integers(0, spec.sides, plan.count)
+    elif spec.sides > 1 and spec.fans == "blocks":
+        sides[_across(plan)] = np.arange(plan.count) * spec.sides // plan.count
+    elif spec.sides > 1:
+        block = away_block(plan, round(spec.away_share * plan.count))
+        sides[block] = AWAY + np.arange(len(block)) * (spec.sides - 1) // max(len(block), 1)
+    in_block = spec.sides == 1 or spec.fans == "away block"
+    others = np.flatnonzero(sides == HOME) if in_block else np.arange(plan.count)
     count = min(len(others), round(spec.neutrals * plan.count))
     sides[rng.choice(others, count, replace=False, shuffle=False)] = NEUTRAL
     return sides
+
+
+def draw_fervour(
+    sides: NDArray[np.int8], spec: CrowdSpec, rng: np.random.Generator
+) -> NDArray[np.float32]:
+    """(N,) float32 how much each makes of what happens: about 1, neutrals 0.4, ultras 1.5.
+
+    Ordinary supporters differ by up to 0.15. Away supporters hold three times as many ultras.
+    """
+    fervour = rng.uniform(0.85, 1.15, len(sides)).astype(np.float32)
+    share = np.where(sides == HOME, spec.ultras, min(3.0 * spec.ultras, 1.0))
+    fervour[rng.random(len(sides)) < share] = 1.5
+    fervour[sides == NEUTRAL] = 0.4
+    return fervour
 
 
 def away_block(plan: SeatPlan, count: int) -> NDArray[np.int64]:

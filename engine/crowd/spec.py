@@ -10,6 +10,7 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Literal, cast, get_args
 
+from ...components.team import MOST_SIDES
 from ..errors import AssetError
 from .bowl import MAX_SEATS
 from .selection import parse_selection
@@ -19,19 +20,21 @@ from .stand import MOST_ROWS, MOST_SEATS
 Layout = Literal["bowl", "stand"]
 Poses = Literal["streams", "baked"]
 Offsets = Literal["normal", "uniform"]
+Fans = Literal["away block", "mixed", "blocks"]
 LAYOUTS: tuple[Layout, ...] = get_args(Layout)
 
 _CHOICES: dict[str, tuple[str, ...]] = {
     "layout": LAYOUTS,
     "poses": get_args(Poses),
     "offsets": get_args(Offsets),
+    "fans": get_args(Fans),
 }
 
 _WHOLE = {
     "seats": (1, MAX_SEATS),
     "rows": (1, MOST_ROWS),
     "columns": (1, MOST_ROWS),
-    "sides": (1, 2),
+    "sides": (1, MOST_SIDES),
     "streams": (1, 256),
     "history": (2, 254),
     "slots": (0, 8192),
@@ -49,6 +52,8 @@ _REAL = {
     "children": (0.0, 1.0),
     "old": (0.0, 1.0),
     "props": (0.0, 1.0),
+    "ultras": (0.0, 1.0),
+    "embarrassment": (0.0, 1.0),
 }
 
 
@@ -72,9 +77,19 @@ class CrowdSpec:
         Who is there, applied in this order: a random share `occupancy` of all seats is taken,
         then the seats of `empty` are cleared, then those of `occupied` are taken. The texts are
         explained in `selection`: ``"12|345"``, ``"rows 3-10"``, ``"section 5"``, ...
-    sides, neutrals, away_share
-        With 2 sides the share `away_share` of the seats is one contiguous away block; the share
-        `neutrals` of all seats supports nobody; the rest is home.
+    sides, neutrals, away_share, fans
+        The share `neutrals` of all seats supports nobody. With several sides `fans` says how their
+        supporters sit: ``"away block"`` gives the share `away_share` of the seats to one contiguous
+        block, which the sides but home divide among them; ``"mixed"`` draws every supporter's side,
+        each as likely as the others; ``"blocks"`` gives each side an equal block of neighbours.
+    ultras
+        Share of home supporters who make more of everything and stand all match; three times as
+        many of the others.
+    behaviour
+        Table of what people do: ``sport``, ``rock_concert``, ``classical_concert``, ``speech``, or
+        a file.
+    embarrassment
+        Of the whole crowd: nobody minds being seen at 0, everybody does at 1.
     streams, history
         Animation streams and poses kept of each.
     slots, uniques
@@ -109,11 +124,17 @@ class CrowdSpec:
     occupancy: float = field(default=0.96, metadata=_help("share of the seats taken, 0 to 1"))
     occupied: tuple[str, ...] = field(default=(), metadata=_help("seats taken in any case"))
     empty: tuple[str, ...] = field(default=(), metadata=_help("seats cleared"))
-    sides: int = field(default=1, metadata=_help("supporting sides, 1 or 2"))
+    sides: int = field(default=1, metadata=_help("supporting sides, 1 to 8"))
     neutrals: float = field(default=0.03, metadata=_help("share that supports nobody"))
     away_share: float = field(default=0.05, metadata=_help("share of the away block, with 2 sides"))
     children: float = field(default=0.06, metadata=_help("share of children"))
     old: float = field(default=0.1, metadata=_help("share of old people"))
+    fans: Fans = field(
+        default="away block", metadata=_help("how sides sit: away block, mixed or blocks")
+    )
+    ultras: float = field(default=0.05, metadata=_help("share of supporters who are ultras"))
+    behaviour: str = field(default="sport", metadata=_help("behaviour table: a name or a file"))
+    embarrassment: float = field(default=0.25, metadata=_help("of the whole crowd, 0 to 1"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
@@ -142,9 +163,13 @@ class CrowdSpec:
             )
         if self.children + self.old > 1.0 + 1e-9:
             raise ValueError(f"children + old must be at most 1, not {self.children} + {self.old}")
-        if self.sides == 2 and self.neutrals + self.away_share > 1.0 + 1e-9:
+        if (
+            self.sides > 1
+            and self.fans == "away block"
+            and self.neutrals + self.away_share > 1.0 + 1e-9
+        ):
             raise ValueError(
-                "neutrals + away_share must be at most 1 with 2 sides, "
+                "neutrals + away_share must be at most 1 with an away block, "
                 f"not {self.neutrals} + {self.away_share}"
             )
 
@@ -216,11 +241,11 @@ def _clean(name: str, value: object) -> object:
         if not good or not isfinite(cast(float, value)) or not least <= cast(float, value) <= most:
             raise ValueError(f"{name} must be a number from {least:g} to {most:g}, not {value!r}")
         return float(cast(float, value))
-    if name == "character":
+    if name in ("character", "behaviour"):
         if isinstance(value, Path):
             return str(value)
         if not isinstance(value, str):
-            raise ValueError(f"character must be a file name, not {value!r}")
+            raise ValueError(f"{name} must be a file name, not {value!r}")
         return value
     return _clean_texts(name, value)
 

@@ -7,8 +7,8 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from tifo.components import AgentAnimID, Detail, Level, MotionState, Transition, View
-from tifo.components.motion import NEVER
+from tifo.components import AgentAnimID, Behaviour, Detail, Level, MotionState, Transition, View
+from tifo.components.team import Team
 
 
 def test_agents_begin_on_one_row_at_rest() -> None:
@@ -44,20 +44,34 @@ def test_a_transition_can_hold_what_an_agent_leaves() -> None:
     assert source < {f.name for f in fields(Transition)}
 
 
-def test_everyone_shows_what_is_innate_and_nothing_is_due() -> None:
-    innate = np.array([2, 0, 1], np.int16)
-    state = MotionState.allocate(innate)
-    for name in ("wanted", "shown", "innate", "reaction"):
+def test_everyone_shows_a_motion_and_wants_no_other() -> None:
+    motion = np.array([2, 0, 1], np.int16)
+    state = MotionState.allocate(motion)
+    for name in ("wanted", "shown"):
         column = getattr(state, name)
-        np.testing.assert_array_equal(column, innate)
-        assert not np.shares_memory(column, innate)
+        np.testing.assert_array_equal(column, motion)
+        assert not np.shares_memory(column, motion)
     state.wanted[0] = 7
-    assert state.innate[0] == state.shown[0] == 2
-    assert (state.react_at == NEVER).all()
-    assert (state.calm_at == NEVER).all()
-    assert state.react_at.dtype == np.int32
+    assert state.shown[0] == 2
     assert (state.blend == 12.0).all()
     assert not state.busy_until.any()
+
+
+def test_nothing_has_moved_anybody_yet() -> None:
+    behaviour = Behaviour.allocate(2, 4)
+    assert behaviour.state.shape == behaviour.until.shape == (2, 4)
+    assert (behaviour.ahead == -1).all()
+    assert (behaviour.event == -1).all()
+    assert not behaviour.reacting.any()
+    assert (behaviour.stirred_until == behaviour.stirred_from).all()
+    assert behaviour.signals == {}
+    assert Behaviour.allocate(1, 1).signals is not behaviour.signals
+
+
+def test_supporters_are_ordinary_unless_somebody_says_more() -> None:
+    assert Team(np.zeros(3, np.int8)).fervour.tolist() == [1.0, 1.0, 1.0]
+    given = np.array([0.4, 1.5], np.float32)
+    assert Team(np.zeros(2, np.int8), given).fervour is given
 
 
 def test_nobody_is_in_view_at_first() -> None:

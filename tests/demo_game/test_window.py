@@ -42,8 +42,8 @@ def main():
     crowd = game.simulation.crowd
 
     def reacting(side):
-        due = crowd.motion.calm_at[crowd.team.side == side]
-        return float((due < 2**31 - 1).mean())
+        will = crowd.behaviour.stirred_until[crowd.team.side == side]
+        return float((will > crowd.behaviour.tick).mean())
 
     ticks(3)
     assert reacting(0) == reacting(1) == 0
@@ -51,11 +51,11 @@ def main():
     ticks(3)
     assert reacting(0) > 0.85 and 0.3 < reacting(1) < 0.8, (reacting(0), reacting(1))
 
-    before = crowd.motion.calm_at.copy()
+    before = crowd.behaviour.stirred_until.copy()
     game.window.dispatch_event("on_mouse_press", 160, 100, mouse.LEFT, 0)
     game.window.dispatch_event("on_mouse_release", 160, 100, mouse.LEFT, 0)
     ticks(3)
-    changed = np.flatnonzero(crowd.motion.calm_at != before)
+    changed = np.flatnonzero(crowd.behaviour.stirred_until != before)
     places = crowd.placement.position[:, changed]
     assert 1 <= len(changed) < 200 and np.ptp(places[0]) < 15, len(changed)
 

@@ -17,7 +17,7 @@ def test_agents_begin_with_their_innate_clip_in_all_phases(simulate: MakeSimulat
     assert crowd.baked is not None
     clips = crowd.baked[1]
     names = [crowd.character.clips[clip].name for clip in clips.clip]
-    assert names == [crowd.library.names[motion] for motion in crowd.motion.innate]
+    assert names == [crowd.library.names[motion] for motion in crowd.motion.shown]
     assert "walk" not in names
     assert clips.began.max() <= 0
     assert np.ptp(clips.began) > 200

@@ -9,19 +9,17 @@ import pytest
 
 from tifo.components.motion import NEVER
 from tifo.engine.behaviour import Goal
-from tifo.engine.crowd.motions import Role
 from tifo.systems.simulation import Simulation
 
 MakeSimulation = Callable[..., Simulation]
 
 
-def _cheering(simulation: Simulation) -> np.ndarray:
-    crowd = simulation.crowd
-    return np.isin(crowd.motion.shown, crowd.library.roles[Role.CHEER])
+def _doing(simulation: Simulation, *states: str) -> np.ndarray:
+    return np.any([simulation.crowd.in_state(state) for state in states], axis=0)
 
 
 @pytest.mark.parametrize("poses", ["streams", "baked"])
-def test_most_supporters_cheer_within_two_seconds_and_all_calm_down_by_thirty(
+def test_most_supporters_cheer_within_two_seconds_and_all_calm_down(
     simulate: MakeSimulation, poses: str
 ) -> None:
     simulation = simulate(poses=poses, sides=2, away_share=0.3, neutrals=0.0)
@@ -34,19 +32,23 @@ def test_most_supporters_cheer_within_two_seconds_and_all_calm_down_by_thirty(
     home, away = present & (crowd.team.side == 0), present & (crowd.team.side == 1)
     changed = crowd.motion.shown != before
     assert changed[home].mean() > 0.9
-    assert _cheering(simulation)[home].mean() > 0.9
-    assert _cheering(simulation)[away].mean() < 0.1
-    assert changed[~present].mean() < 0.2
+    loud = _doing(simulation, "clap", "cheer", "jump")
+    assert loud[home].mean() > 0.9
+    assert loud[away].mean() < 0.1
+    assert 0.3 < _doing(simulation, "dismay", "sit_dismay")[away].mean() < 0.9
+    assert not crowd.behaviour.reacting[~present].any()
     simulation.run(seconds=28.0)
-    state = crowd.motion
-    assert (state.calm_at == NEVER).all()
-    np.testing.assert_array_equal(state.wanted, state.innate)
-    # Who began another innate motion just now may be blending still.
-    blending = np.zeros(len(crowd), bool)
-    if crowd.transition is not None:
-        blending = crowd.transition.duration[0] > 0
-    np.testing.assert_array_equal(state.shown[~blending], state.innate[~blending])
-    assert blending.mean() < 0.1
+    assert not crowd.behaviour.reacting.any()
+    # Those who are still excited are on their feet and break out now and then.
+    assert _doing(simulation, "clap", "cheer", "jump")[home].mean() < 0.4
+    crowd.emotion.excitement[:] = crowd.emotion.rest_excitement
+    simulation.run(seconds=20.0)
+    assert not _doing(simulation, "clap", "cheer", "jump", "dismay").any()
+    ultras = crowd.team.fervour > 1.3
+    assert _doing(simulation, "stand")[~ultras].mean() < 0.1
+    # Nobody is left behind by what they want, but for those who are changing just now.
+    behind = crowd.motion.shown != crowd.motion.wanted
+    assert behind.mean() < 0.1
 
 
 def test_what_is_drawn_follows_what_is_wanted(simulate: MakeSimulation) -> None:
@@ -69,18 +71,29 @@ def test_a_goal_between_two_frames_takes_effect_at_the_next_pose_tick(
     simulate: MakeSimulation,
 ) -> None:
     simulation = simulate()
-    motion = simulation.crowd.motion
+    behaviour = simulation.crowd.behaviour
     simulation.advance(2 / 60)
     simulation.send(Goal(0))
     simulation.advance(0.0)
-    assert (motion.react_at == NEVER).all()
+    assert not behaviour.stirred_until.any()
     # Tick 3 is no pose tick.
     simulation.advance(1 / 60)
     assert simulation.clock.tick == 3
-    assert (motion.react_at == NEVER).all()
+    assert not behaviour.stirred_until.any()
     simulation.advance(1 / 60)
-    assert (motion.react_at != NEVER).mean() > 0.8
-    assert motion.react_at.min() >= simulation.clock.pose_tick + 4
+    will_react = behaviour.stirred_until > simulation.clock.pose_tick
+    assert will_react.mean() > 0.8
+    # Nobody reacts faster than a tenth of a second.
+    assert behaviour.stirred_from[will_react].min() >= simulation.clock.pose_tick + 4
+
+
+def test_a_goal_may_be_announced_for_a_time(simulate: MakeSimulation) -> None:
+    simulation = simulate()
+    simulation.send(Goal(0, time=1.0))
+    simulation.run(seconds=0.95)
+    assert not simulation.crowd.behaviour.stirred_until.any()
+    simulation.run(seconds=0.1)
+    assert simulation.crowd.behaviour.stirred_until.any()
 
 
 @pytest.mark.parametrize("slots", [0, 8])
@@ -93,7 +106,7 @@ def test_an_agent_may_change_its_mind_in_the_middle_of_a_blend(
     assert transition is not None
     assert anim is not None
     assert pool is not None
-    crowd.motion.calm_at[:] = NEVER - 1  # nobody wanders
+    crowd.behaviour.until[:] = NEVER  # nobody moves on
     simulation.run(seconds=0.1)
     crowd.motion.wanted[0] = 4
     simulation.run(seconds=2 / 60)
@@ -126,7 +139,7 @@ def test_a_baked_agent_changes_clip_at_once(simulate: MakeSimulation) -> None:
     assert crowd.baked is not None
     poses, clips = crowd.baked
     crowd.motion.wanted[0] = 4
-    crowd.motion.calm_at[0] = NEVER - 1
+    crowd.behaviour.until[:, 0] = NEVER
     simulation.run(seconds=2 / 60)
     assert clips.clip[0] == crowd.library.clips[4]
     shown = crowd.palettes(np.array([0]), simulation.clock.pose_tick)[0]

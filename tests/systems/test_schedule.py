@@ -144,5 +144,5 @@ def test_several_crowds_share_the_systems(factories: ModuleType, esper_world: st
     for _ in range(90):
         clock.advance()
         esper.process(clock)
-    assert (first.motion.wanted != first.motion.innate).mean() > 0.5
-    np.testing.assert_array_equal(second.motion.wanted, second.motion.innate)
+    assert first.behaviour.reacting.mean() > 0.5
+    assert not second.behaviour.reacting.any()

@@ -43,7 +43,7 @@ def test_a_dilation_begins_at_the_next_pose_tick_and_ends(simulate: MakeSimulati
     crowd = simulation.crowd
     assert crowd.anim is not None
     simulation.run(seconds=0.1)
-    crowd.motion.calm_at[:] = NEVER - 1
+    crowd.behaviour.until[:] = NEVER
     crowd.dilate(np.array([3, 5]), np.array([6.0, 20.0], np.float32), 1.0)
     assert not crowd.anim.rate.any()
     simulation.run(seconds=2 / 60)
@@ -97,7 +97,7 @@ def test_offsets_keep_their_spread_when_the_history_changes(simulate: MakeSimula
     simulation = simulate(offsets="uniform")
     crowd = simulation.crowd
     assert crowd.anim is not None
-    crowd.motion.calm_at[:] = NEVER - 1
+    crowd.behaviour.until[:] = NEVER
     simulation.run(seconds=0.1)
     before = crowd.anim.target[0].copy()
     crowd.set_history(16)
@@ -134,6 +134,7 @@ def test_seated_spectators_get_up_to_cheer_and_sit_down_again(spectators: MakeSi
     crowd = simulation.crowd
     simulation.run(seconds=1.0)
     seated = np.array([name.startswith("sit_") for name in crowd.library.names])
+    crowd.team.fervour[:] = 1.0  # no ultras, who don't sit down
     sat = seated[crowd.motion.shown] & ~_shown(simulation, "sit_down")
     simulation.send(Goal(0))
     got_up = np.zeros(len(crowd), bool)
@@ -141,7 +142,9 @@ def test_seated_spectators_get_up_to_cheer_and_sit_down_again(spectators: MakeSi
     jumped = 0
     before = crowd.motion.shown.copy()
     stand_up, sit_down = (crowd.library.names.index(n) for n in ("stand_up", "sit_down"))
-    for _ in range(30 * 30):
+    for second in range(30 * 30):
+        if second == 10 * 30:
+            crowd.emotion.excitement[:] = crowd.emotion.rest_excitement
         simulation.run(seconds=2 / 60)
         now = crowd.motion.shown
         got_up |= _shown(simulation, "stand_up")
@@ -161,8 +164,10 @@ def test_a_way_is_played_from_its_beginning_to_its_end(spectators: MakeSimulatio
     assert crowd.pool is not None
     assert crowd.anim is not None
     simulation.run(seconds=0.5)
-    crowd.motion.calm_at[:] = NEVER - 1
-    sitting = np.flatnonzero(_shown(simulation, "sit_idle"))
+    crowd.behaviour.until[:] = NEVER
+    assert crowd.transition is not None
+    resting = crowd.transition.duration[0] == 0
+    sitting = np.flatnonzero(_shown(simulation, "sit_idle") & resting)
     crowd.motion.wanted[sitting] = crowd.library.names.index("cheer")
     simulation.run(seconds=2 / 60)
     assert _shown(simulation, "stand_up")[sitting].all()
@@ -192,7 +197,7 @@ def test_who_is_hit_does_not_get_up_first(spectators: MakeSimulation) -> None:
     agent = int(np.flatnonzero(_shown(simulation, "sit_idle"))[0])
     crowd.motion.wanted[agent] = crowd.library.names.index("dismay")
     crowd.motion.blend[agent] = 6.0
-    crowd.motion.calm_at[agent] = NEVER - 1
+    crowd.behaviour.until[:, agent] = NEVER
     simulation.run(seconds=2 / 60)
     assert _shown(simulation, "dismay")[agent]
 
@@ -208,8 +213,8 @@ def test_claps_are_heard_at_the_rate_at_which_hands_meet(spectators: MakeSimulat
     assert crowd.pool is not None
     assert crowd.anim is not None
     clapping = crowd.library.names.index("clap")
-    crowd.motion.innate[:] = crowd.motion.wanted[:] = clapping
-    crowd.motion.calm_at[:] = NEVER - 1
+    crowd.motion.wanted[:] = clapping
+    crowd.behaviour.until[:] = NEVER
     simulation.run(seconds=6.0)
     crowd.motion.wanted[:] = clapping
     heard = np.zeros(len(crowd))

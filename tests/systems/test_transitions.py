@@ -21,7 +21,7 @@ TICK = 2 / 60
 def simulation(simulate: MakeSimulation) -> Simulation:
     """Nobody changes motion of their own accord."""
     made = simulate(uniques=4, slots=50)
-    made.crowd.motion.calm_at[:] = NEVER - 1
+    made.crowd.behaviour.until[:] = NEVER
     made.run(seconds=TICK)
     return made
 

@@ -152,7 +152,10 @@ def _report(console: Any, result: dict[str, Any]) -> None:
             f"{result['plain_median_ms']:.3f} ms; to add a stream: {result['add_stream_ms']:.3f} ms"
         )
     if "goal_tick_ms" in result:
-        console.print(f"the tick of a goal: {result['goal_tick_ms']:.2f} ms (median)")
+        console.print(
+            f"the tick of a goal: {result['goal_tick_ms']:.2f} ms (median), "
+            f"behaviour {result['goal_behaviour_ms']:.2f} ms of it"
+        )
     for name, figures in result.get("cameras", {}).items():
         levels = ", ".join(f"{count:,}" for count in figures["agents_at_level"])
         console.print(

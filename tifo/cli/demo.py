@@ -20,6 +20,11 @@ _FROM_SPEC = (
     "columns",
     "occupancy",
     "sides",
+    "ultras",
+    "behaviour",
+    "embarrassment",
+    "children",
+    "old",
     "streams",
     "history",
     "slots",
@@ -44,7 +49,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="METRES",
         help="metres a unit of BVH files, guessed if absent",
     )
-    kinds: dict[str, Any] = {"occupancy": float, "props": float, "poses": str, "offsets": str}
+    kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float}
+    kinds.update({"embarrassment": float, "children": float, "old": float})
+    kinds.update({"poses": str, "offsets": str, "behaviour": str})
     for name in _FROM_SPEC:
         kind = kinds.get(name, int)
         what.add_argument(

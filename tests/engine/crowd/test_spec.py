@@ -32,7 +32,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "occupancy": SHARE,
     "occupied": SELECTIONS,
     "empty": SELECTIONS,
-    "sides": st.integers(1, 2),
+    "sides": st.integers(1, 8),
     "neutrals": st.floats(0.0, 0.5),
     "away_share": st.floats(0.0, 0.5),
     "children": st.floats(0.0, 0.5),
@@ -49,6 +49,10 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "lod": st.booleans(),
     "character": TEXT,
     "motions": st.lists(TEXT),
+    "fans": st.sampled_from(["away block", "mixed", "blocks"]),
+    "ultras": SHARE,
+    "behaviour": TEXT,
+    "embarrassment": SHARE,
 }
 
 
@@ -57,6 +61,8 @@ def test_defaults() -> None:
     assert (spec.layout, spec.seats, spec.occupancy) == ("bowl", 65_000, 0.96)
     assert (spec.step, spec.rise, spec.depth) == (1.5, 2.0, 2.0)
     assert (spec.sides, spec.neutrals, spec.away_share) == (1, 0.03, 0.05)
+    assert (spec.fans, spec.ultras, spec.behaviour) == ("away block", 0.05, "sport")
+    assert spec.embarrassment == 0.25
     assert (spec.streams, spec.history, spec.seed, spec.lod) == (256, 60, 1, True)
     assert (spec.occupied, spec.empty, spec.character, spec.motions) == ((), (), "", ())
 
@@ -100,7 +106,7 @@ def test_round_trip(tmp_path: Path, values: dict[str, Any]) -> None:
         ("neutrals", -0.1, "from 0 to 1"),
         ("away_share", True, "number"),
         ("props", 1.5, "from 0 to 1"),
-        ("sides", 3, "from 1 to 2"),
+        ("sides", 9, "from 1 to 8"),
         ("streams", 257, "from 1 to 256"),
         ("history", 1, "from 2 to 254"),
         ("history", 255, "from 2 to 254"),

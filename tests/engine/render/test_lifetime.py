@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tifo.components.motion import NEVER
 from tifo.engine.behaviour import Goal
 from tifo.engine.crowd.cameras import camera_presets
 from tifo.engine.crowd.spec import CrowdSpec
@@ -133,7 +134,7 @@ def test_a_quiet_tick_copies_one_slice_the_stream_table_and_the_lists(
     assert crowd.anim is not None
     store = crowd.pool.store
     # Nobody may change motion of their own accord.
-    crowd.motion.innate[:] = crowd.motion.shown
+    crowd.behaviour.until[:] = NEVER
     stage = Stage(simulation, SIZE)
     look = camera(simulation)
     stage.draw(look, 1 / 30)
