@@ -112,13 +112,15 @@ def tick(
 def _fill_slots(crowd: Crowd) -> None:
     """Ask as many agents as there are free slots for something else, for an hour.
 
-    The first time they begin a blend, and the second time they leave its middle.
+    The first time they begin a blend, and the second time they leave its middle. Behaviour leaves
+    them alone, so that they keep their slots.
     """
     ladder, pool = crowd.ladder, crowd.pool
     assert ladder is not None
     assert pool is not None
     used = ladder.slots.holds(ladder.transition.row[0]) & (ladder.transition.duration[0] > 0)
     agents = np.flatnonzero(~used)[: ladder.slots.free]
+    crowd.motion.busy_until[agents] = np.iinfo(np.int32).max
     crowd.transition_to_streamed(agents, Stream(0, int(pool.generation[0])), duration=3600.0)
 
 
