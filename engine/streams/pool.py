@@ -119,14 +119,14 @@ class StreamPool(StreamTable):
             self._record_tree_events(tick)
         if len(twins):
             pose[len(rows) :] = pose[mirrored]
-            self.twins.fit_poses(pose[len(rows) :], twins)
+            self.twins.fit_poses(pose[len(rows) :], self.twins.kind[twins])
             self._mirror(tick, twins)
             rows = np.concatenate([rows, twins])
         whole = len(rows) == len(self.running) and bool((np.diff(rows) > 0).all())
         target = self.store.ring[self.store.slice_of(tick)]
         workspace.evaluate(pose, target, None if whole else rows)
         if len(twins):
-            self.twins.fit_palettes(target, twins)
+            self.twins.fit_palettes(target, twins, self.twins.kind[twins])
         if len(self.markers.joints):
             markers = workspace.joint_positions(self.markers.joints)
             self.store.ring_markers[self.store.slice_of(tick), rows, :, :3] = markers

@@ -168,11 +168,7 @@ class StreamTable(ControllerAccess[Stream]):
             For an unknown type, one that the stream is shown on already, or when no row is free.
         """
         base = self._own_row(stream)
-        names = [kind.name for kind in self.twins.types]
-        if body not in names:
-            known = ", ".join(names) or "none"
-            raise ValueError(f"there is no body type '{body}'; known: {known}")
-        kind = 1 + names.index(body)
+        kind = self.twins.kind_of(body)
         if self.twins.table[kind, base] >= 0:
             raise ValueError(f"stream {base} is shown on body type '{body}' already")
         row = self._free_row()

@@ -113,10 +113,20 @@ class Twins:
         at = place[self.base[twins]]
         return twins[at >= 0], at[at >= 0]
 
-    def fit_poses(self, poses: NDArray[np.float32], rows: NDArray[np.int64]) -> None:
-        """Give local poses (n, 10, J) the bones of the body types of rows (n,), in place."""
-        poses[:, TRANSLATION] *= self._bones[self.kind[rows]][:, None]
+    def kind_of(self, body: str) -> int:
+        """Number of a body type; ValueError names the known ones if there is none of the name."""
+        names = [kind.name for kind in self.types]
+        if body not in names:
+            known = ", ".join(names) or "none"
+            raise ValueError(f"there is no body type '{body}'; known: {known}")
+        return 1 + names.index(body)
 
-    def fit_palettes(self, palettes: NDArray[np.float32], rows: NDArray[np.int64]) -> None:
-        """Turn palettes (R, J, 3, 4) of rows (n,) from the character's bind pose, in place."""
-        palettes[rows] = palettes[rows] @ self._refit[self.kind[rows]]
+    def fit_poses(self, poses: NDArray[np.float32], kind: NDArray[np.uint8]) -> None:
+        """Give local poses (n, 10, J) the bones of body types (n,), in place."""
+        poses[:, TRANSLATION] *= self._bones[kind][:, None]
+
+    def fit_palettes(
+        self, palettes: NDArray[np.float32], rows: NDArray[np.int64], kind: NDArray[np.uint8]
+    ) -> None:
+        """Turn rows (n,) of palettes (R, J, 3, 4) from the character's bind pose, in place."""
+        palettes[rows] = palettes[rows] @ self._refit[kind]

@@ -71,6 +71,7 @@ class UniquePool(ControllerAccess[Unique]):
         "before_cut",
         "clip",
         "generation",
+        "kind",
         "looping",
         "pool",
         "running",
@@ -89,6 +90,7 @@ class UniquePool(ControllerAccess[Unique]):
         self.alive = np.zeros(count, np.bool_)
         self.running = np.zeros(count, np.bool_)
         self.generation = np.zeros(count, np.int32)
+        self.kind = np.zeros(count, np.uint8)
         self.clip = np.full(count, -1, np.int64)
         self.time = np.zeros(count, np.float64)
         self.speed = np.ones(count, np.float64)
@@ -108,6 +110,7 @@ class UniquePool(ControllerAccess[Unique]):
         time: float = 0.0,
         speed: float = 1.0,
         looping: bool | None = None,
+        body: str | None = None,
     ) -> Unique:
         """Take a free place.
 
@@ -120,16 +123,21 @@ class UniquePool(ControllerAccess[Unique]):
             Seconds since the start of the clip, or of all clips of the tree, and how fast it plays.
         looping
             Whether a clip's time wraps at its end; as the clip says if None.
+        body
+            Name of the pool's body type that it is for, unless that is the skeleton's own. Palettes
+            that are written are shown as they are.
 
         Raises
         ------
         ValueError
-            For an unknown clip or joint, a value that is not finite, or when no place is free.
+            For an unknown body type, clip or joint, a value that is not finite, or when no place is
+            free.
         """
         check_looping(motion, looping)
         if motion is not None:
             check_motion(motion, self.bank)
         check_finite(time=time, speed=speed)
+        kind = 0 if body is None else self.pool.twins.kind_of(body)
         free = np.flatnonzero(~self.alive)
         if not len(free):
             raise ValueError(
@@ -141,6 +149,7 @@ class UniquePool(ControllerAccess[Unique]):
         self.alive[k] = True
         self.generation[k] += 1
         self.speed[k] = speed
+        self.kind[k] = kind
         if looping is not None:
             self.looping[k] = looping
         self._forget(k)
@@ -249,8 +258,8 @@ class UniquePool(ControllerAccess[Unique]):
             workspace = self._workspace(count)
             self._play_on(playing, trees, workspace)
             workspace.mixed[len(running) : count] = self._poses[local]
-            workspace.evaluate(workspace.mixed, self._palettes)
-        self._evaluated = np.concatenate([playing, trees, local])
+            self._evaluated = np.concatenate([playing, trees, local])
+            self._fit(workspace)
         self._pending = np.flatnonzero(self._written == _PALETTES)
 
     def commit(self, tick: int) -> None:
@@ -300,6 +309,18 @@ class UniquePool(ControllerAccess[Unique]):
                 workspace.mixed[:split],
                 workspace.scratch[:split],
             )
+
+    def _fit(self, workspace: Kinematics) -> None:
+        """Make the palettes, on the bones of the body types that the uniques are for."""
+        kind = self.kind[self._evaluated]
+        other = np.flatnonzero(kind)
+        if len(other):
+            poses = workspace.mixed[other]
+            self.pool.twins.fit_poses(poses, kind[other])
+            workspace.mixed[other] = poses
+        workspace.evaluate(workspace.mixed, self._palettes)
+        if len(other):
+            self.pool.twins.fit_palettes(self._palettes, other, kind[other])
 
     def _workspace(self, count: int) -> Kinematics:
         """Room for at least `count` poses; what is beyond them is evaluated in vain."""

@@ -13,7 +13,7 @@ from tifo.engine.animation import ClipBank
 from tifo.engine.animation.body_type import BodyType
 from tifo.engine.animation.clip import ClipEvent
 from tifo.engine.animation.controllers import Blend2, ClipNode
-from tifo.engine.streams import Stream, StreamPool
+from tifo.engine.streams import Stream, StreamPool, UniquePool
 from tifo.engine.streams.displayed import read_palettes, shown_poses
 
 
@@ -165,3 +165,33 @@ def test_a_twin_passes_the_events_of_its_streams_tree(factories: ModuleType) -> 
             passed += len(found[0][0])
     # Two trees, whose clips pass a clap and two steps: each name is found once or twice.
     assert passed >= 6
+
+
+def test_a_unique_can_be_for_another_body(pool_with_unique: StreamPool) -> None:
+    pool = pool_with_unique
+    uniques = UniquePool(pool)
+    stream = pool.add("cheer", time=0.3)
+    twin = pool.add_twin(stream, "old")
+    made = [
+        uniques.add("cheer", time=0.3, body="old"),
+        uniques.add("cheer", time=0.3),
+        uniques.add(body="old"),
+    ]
+    uniques.write(made[2], pool.bank.sample_one(pool.bank.index("cheer"), 0.3)[0])
+    for part in (pool, uniques):
+        part.evaluate(1)
+    for part in (pool, uniques):
+        part.commit(1)
+    shown = [row_palettes(pool, Stream(uniques.row(unique), 0), 1) for unique in made]
+    np.testing.assert_allclose(shown[0], row_palettes(pool, twin, 1), atol=1e-5)
+    np.testing.assert_allclose(shown[1], row_palettes(pool, stream, 1), atol=1e-5)
+    np.testing.assert_allclose(shown[2], shown[0], atol=1e-5)
+    with pytest.raises(ValueError, match="no body type 'giant'"):
+        uniques.add(body="giant")
+
+
+@pytest.fixture
+def pool_with_unique(factories: ModuleType, types: tuple[BodyType, ...]) -> StreamPool:
+    character = factories.make_character()
+    bank = ClipBank(character.skeleton, character.clips)
+    return StreamPool(character.skeleton, bank, capacity=4, history=10, bodies=types, uniques=4)
