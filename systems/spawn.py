@@ -66,7 +66,8 @@ def spawn_crowd(
     seeds = np.random.SeedSequence(spec.seed).spawn(5)
     rng_seats, rng_sides, rng_looks, rng_motion, rng_place = map(np.random.default_rng, seeds)
     clips = character.clips or (_rest_clip(character),)
-    library = sort_motions(clips)
+    # Every motion should have streams of its own.
+    library = sort_motions(clips, most=max(spec.streams // 2, 1))
     plans = None
     if spec.poses == "streams":
         plans = find_ways(clips, library, spec.streams, spec.history)
