@@ -57,6 +57,8 @@ from ..engine.streams.uniques import UniquePool
 from .behaviour import columns_of
 from .crowd import Crowd
 
+STREAMS_FOR_BODIES = 128
+"""With fewer streams, variety of motion is worth more than bones of one's own."""
 SPECTATOR_HEIGHT = 1.75
 """Metres that a character is scaled to, before agents differ."""
 
@@ -86,7 +88,9 @@ def spawn_crowd(
         np.random.default_rng, seeds
     )
     clips = character.clips or (rest_clip(character.skeleton),)
-    library = sort_motions(clips)
+    # Every motion should have streams of its own, and twins of them where there are body types.
+    bodies = spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES
+    library = sort_motions(clips, most=max(spec.streams // (6 if bodies else 2), 1))
     plans = None
     if spec.poses == "streams":
         plans = find_ways(clips, library, spec.streams, spec.history)
@@ -193,7 +197,7 @@ def _add_streams(
     ways_need = 0 if plans is None else sum(plan.streams(spec.history) for plan in plans)
     motions = len(crowd.library.names)
     own = 0
-    if spec.children + spec.old > 0 and pool.twins.types:
+    if spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES and pool.twins.types:
         own = affordable_streams(spec.streams, motions, ways_need, len(pool.twins.types))
     parts: list[Any] = [pool]
     kept = np.zeros(spec.streams, np.bool_)

@@ -134,7 +134,7 @@ def test_the_wheel_holds_the_tree(built: Built) -> None:
     with zipfile.ZipFile(built.wheel) as wheel:
         held = {name for name in wheel.namelist() if ".dist-info/" not in name}
     assert held == tree_files()
-    assert {Path(name).suffix for name in held} == {".py", ".glsl", ".glb", ".typed"}
+    assert {Path(name).suffix for name in held} == {".py", ".glsl", ".glb", ".toml", ".typed"}
 
 
 def test_the_sdist_holds_what_the_wheel_needs(built: Built) -> None:

@@ -7,6 +7,7 @@ streams of a pool out among the motions, and draws motions for agents.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -33,7 +34,10 @@ class Role(Enum):
 
 @dataclass(frozen=True, slots=True)
 class _Pattern:
-    """Clips whose names match belong to `role`; `innate` weighs them when nothing happens."""
+    """Clips whose names match belong to `role`; `innate` weighs them when nothing happens.
+
+    Variants of one motion, which differ only in a number at the end, share that weight.
+    """
 
     words: str
     role: Role
@@ -46,15 +50,19 @@ _PATTERNS = (
     _Pattern(r"stand_?up|sit_?down|standup|sitdown", Role.CALM, 0.0),
     _Pattern(r"sit\w*clap", Role.APPLAUD, 3.0),
     _Pattern(r"clap|applau", Role.APPLAUD, 1.0),
-    _Pattern(r"cheer|fist|jump_full|celebrat|dance|(^|_)jump$", Role.CHEER, 0.0),
+    _Pattern(r"cheer|fist|jump_full|celebrat|dance|(^|_)jump(_\d+)?$", Role.CHEER, 0.0),
     _Pattern(r"wave|thumbsup|yes", Role.CHEER, 1.5),
     _Pattern(r"dismay|disappoint|(^|_)no$|hit_a|sad|hands_on_head", Role.DISMAY, 0.0),
-    _Pattern(r"sit\w*idle|^sitting$|sit_idle", Role.CALM, 60.0),
-    _Pattern(r"idle|stand", Role.CALM, 10.0),
+    _Pattern(r"sit\w*idle|^sitting$|sit_idle", Role.CALM, 120.0),
+    _Pattern(r"idle|stand", Role.CALM, 20.0),
 )
 _REJECTED = re.compile(
-    r"2h_|1h_|block|death|unarmed|dualwield|spell|lie_|pose|jump_(idle|start|land)", re.IGNORECASE
+    r"2h_|1h_|block|death|unarmed|dualwield|spell|lie_|pose|jump_(idle|start|land)"
+    # Parts of a reaction, and reactions on the seat: those who react get up.
+    r"|_beat|mexican|^sit_(cheer|fist|wave|disappoint)",
+    re.IGNORECASE,
 )
+_NUMBER = re.compile(r"_\d+$")
 _STAND_FOR: dict[Role, tuple[Role, ...]] = {
     Role.CALM: (Role.APPLAUD, Role.CHEER),
     Role.APPLAUD: (Role.CHEER,),
@@ -98,12 +106,20 @@ class MotionLibrary:
         return motions
 
 
-def sort_motions(clips: Sequence[Clip]) -> MotionLibrary:
+def sort_motions(clips: Sequence[Clip], most: int | None = None) -> MotionLibrary:
     """Sort a character's clips into roles by their names.
 
     Clips that don't end where they begin are no loops, whatever the file says, and are left out.
     A role that no clip matches is played by another role's motions. If no name matches at all, the
     first clip is the calm one and the second one celebrates; a single clip does everything.
+
+    Parameters
+    ----------
+    clips
+        The character's.
+    most
+        Of how many motions variants are left out, those with the highest numbers first, until so
+        many are left or only one of each kind; None keeps all.
 
     Raises
     ------
@@ -121,6 +137,7 @@ def sort_motions(clips: Sequence[Clip]) -> MotionLibrary:
             kept.append(index)
             role_of.append(pattern.role)
             weight.append(pattern.innate)
+    kept, role_of, weight = _thinned(clips, kept, role_of, weight, most)
     if not kept:
         kept, role_of, weight = [0], [Role.CALM], [1.0]
         if len(clips) > 1:
@@ -217,6 +234,28 @@ def start_streams(
         time = rng.uniform(0.0, float(pool.bank.duration[clip]))
         rows.append(pool.add(clip, time=time, speed=rng.uniform(0.92, 1.08)).row)
     return MotionStreams(first + np.int32(rows[0]), wanted, pool.twins)
+
+
+def _thinned(
+    clips: Sequence[Clip],
+    kept: list[int],
+    roles: list[Role],
+    weights: list[float],
+    most: int | None,
+) -> tuple[list[int], list[Role], list[float]]:
+    """Leave out variants beyond `most` motions, and share the weight out among the rest."""
+    kinds = [_NUMBER.sub("", clips[index].name) for index in kept]
+    order = [kinds[:k].count(kind) for k, kind in enumerate(kinds)]
+    chosen = sorted(range(len(kept)), key=lambda k: (order[k], k))
+    if most is not None:
+        chosen = chosen[: max(most, order.count(0))]
+    chosen.sort()
+    together = Counter(kinds[k] for k in chosen)
+    return (
+        [kept[k] for k in chosen],
+        [roles[k] for k in chosen],
+        [weights[k] / together[kinds[k]] for k in chosen],
+    )
 
 
 def _closes(clip: Clip) -> bool:

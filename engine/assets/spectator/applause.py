@@ -1,63 +1,141 @@
-"""Clapping hands: eight claps that meet, each a little different, at 3.3 Hz.
+"""Clapping at several rates, seated and standing, and the short ways into and out of it.
 
-A clap takes exactly 18 keys, so every contact falls on a key and is kept by any reader.
+A clap takes an even number of sixtieths of a second, so every contact falls on a key and is kept by
+any reader. All loops begin at a contact, in the poses `clapping` and `seated_clapping`.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from .curves import Performance
+from .acting import Acting
+from .curves import Performance, Pose
+from .poses import clapping, seated, seated_clapping, standing
 from .rotations import Array
 
-CLAPS = 8
-CLAP_SECONDS = 0.3
-TOUCH = 0.0225
-"""Half the distance of the wrists, metres, when the palms meet."""
 
-
-def add_claps(p: Performance, height: float) -> Performance:
-    """Bring the hands together `CLAPS` times, the right one striking, the body riding along.
+@dataclass(frozen=True, slots=True)
+class Applause:
+    """How somebody claps.
 
     Parameters
     ----------
-    p
-        A looping performance of CLAPS * CLAP_SECONDS seconds whose hands are free.
-    height
-        Of the wrists above the chest joint, metres.
+    keys
+        Sixtieths of a second that a clap takes.
+    claps
+        How many until it repeats.
+    left, right
+        Metres that each hand opens.
+    above
+        Metres that the right hand comes from above.
+    bob
+        Metres that the knees give with every other clap, if standing.
+    lift
+        Metres that the hands rise on the way through the loop.
+    sway
+        How much the body moves along, 1 for an ordinary crowd.
     """
-    phase = p.times / CLAP_SECONDS
+
+    keys: int = 18
+    claps: int = 8
+    left: float = 0.070
+    right: float = 0.105
+    above: float = 0.045
+    bob: float = 0.005
+    lift: float = 0.012
+    sway: float = 1.0
+
+    @property
+    def seconds(self) -> float:
+        """Of one clap."""
+        return self.keys / 60
+
+
+ORDINARY = Applause()
+SLOW = Applause(keys=30, claps=6, left=0.06, right=0.190, above=0.115, bob=0.010, sway=1.3)
+FAST = Applause(keys=14, claps=12, left=0.055, right=0.075, above=0.02, bob=0.008, sway=1.2)
+RISING = Applause(keys=24, claps=8, left=0.125, right=0.135, above=0.01, lift=0.150, sway=1.6)
+STYLES = (ORDINARY, SLOW, FAST, RISING)
+
+
+def applaud(name: str, style: Applause, base: Pose) -> Performance:
+    """Bring the hands together again and again, the right one striking, the body riding along."""
+    p = Performance(name, style.claps * style.seconds, base)
+    phase = p.times / style.seconds
     within = phase - np.floor(phase + 1e-9)
     # Hands rebound fast, hang open for a moment and come down onto each other at speed.
-    open_hands = np.sin(np.pi * np.clip(within, 0, 1) ** 0.9)
+    opened = np.sin(np.pi * np.clip(within, 0, 1) ** 0.9)
     loop = 2 * np.pi * p.times / p.duration
-    vigour = 1 + 0.16 * np.sin(loop + 0.6) + 0.10 * np.sin(2 * loop + 2.0)
-    spread = open_hands * vigour
-    drift = 0.012 * np.sin(loop)
-    for side, share, ahead, lower in (("_l", 0.070, 0.0, 0.0), ("_r", 0.105, 0.004, 0.006)):
-        sign = 1.0 if side == "_l" else -1.0
-        place = np.stack(
-            [
-                TOUCH + share * spread + sign * drift,
-                height + lower + (0.010 if side == "_l" else 0.045) * spread + 0.010 * np.cos(loop),
-                0.305 + ahead - (0.020 if side == "_l" else 0.035) * spread,
-            ],
-            axis=1,
+    several = style.claps > 1
+    if several:
+        opened = opened * (1 + 0.16 * np.sin(loop + 0.6) + 0.10 * np.sin(2 * loop + 2.0))
+    rise = style.lift * (0.5 - 0.5 * np.cos(loop)) * several
+    aside = 0.012 * style.sway * np.sin(loop) * several
+    for side, sign, share, up in (
+        ("_l", 1.0, style.left, 0.010),
+        ("_r", -1.0, style.right, style.above),
+    ):
+        way = [share * opened + sign * aside, rise + up * opened, -0.35 * share * opened]
+        p.add("hand" + side, np.stack(way, axis=1))
+        finger = np.array([-0.12, -0.14, 0.12]) if side == "_l" else np.array([-0.12, -0.22, 0.16])
+        p.add("finger" + side, _of(opened, finger))
+        p.add("curl" + side, (0.24 * np.minimum(opened, 1.2))[:, None])
+    s = style.sway
+    p.wave("chest", (0.012 * s, 0.0, 0.0), style.claps, 0.15)
+    p.wave("head", (0.020 * s, 0.0, 0.0), style.claps, 0.35).wave("shrug", 0.014, style.claps, 0.05)
+    if several:
+        p.wave("spine", (0.0, 0.014 * s, 0.018 * s), 2)
+        p.wave("chest", (0.014, 0.022 * s, 0.016 * s), 1, 0.1)
+        p.wave("head", (0.02 * s, 0.09 * s, 0.03), 1, 0.2).wave(
+            "neck", (0.0, 0.04 * s, 0.0), 1, 0.1
         )
-        p.add("hand" + side, place - p.base["hand" + side])
-        finger = _blend((0.02, 0.80, 0.62), (-0.10, 0.66, 0.74), spread)
-        p.add("finger" + side, finger - p.base["finger" + side])
-        p.add("palm" + side, np.array([-1.0, -0.05, 0.10]) - p.base["palm" + side])
-        p.add("elbow" + side, np.array([0.75, -0.75, -0.45]) - p.base["elbow" + side])
-        p.add("wrist" + side, 1.0 - p.base["wrist" + side])
-        p.add("curl" + side, (-0.03 + 0.24 * spread)[:, None] - p.base["curl" + side])
-    p.swing("chest", (0.012, 0.0, 0.0), CLAPS, 0.15).swing("head", (0.020, 0.0, 0.0), CLAPS, 0.35)
-    p.swing("shrug", 0.014, CLAPS, 0.05)
-    p.swing("spine", (0.0, 0.014, 0.018), 2).swing("chest", (0.014, 0.022, 0.016), 1, 0.1)
-    p.swing("head", (0.02, 0.09, 0.03), 1, 0.2).swing("neck", (0.0, 0.04, 0.0), 1, 0.1)
+        p.add("head", _of(rise, np.array([-1.2, 0.0, 0.0])))
+    if base["hips"][1] > 0.8:
+        bounces = max(style.claps // 2, 1)
+        p.wave("hips", (0.0, style.bob, 0.0), bounces, 0.25)
+        p.wave("hips", (0.016 * s * several, 0.0, 0.004), 1)
+        p.wave("hips_turn", (0.008, 0.03 * several, -0.02 * several), 1)
     return p
 
 
-def _blend(near: tuple[float, ...], far: tuple[float, ...], share: Array) -> Array:
-    result: Array = np.array(near) + share[:, None] * (np.array(far) - np.array(near))
+def begin(name: str, base: Pose, goal: Pose) -> Acting:
+    """A third of a second from rest to the first contact."""
+    p = Acting(name, 1 / 3, base, looping=False, goal=goal, snap=2.2)
+    for side, late in (("_l", 0.0), ("_r", 0.02)):
+        p.hand(side, 0.0, 0.17 + late, {"hand": (0.155, 0.02, 0.265)})
+    p.back(0.02, 0.30)
+    return p
+
+
+def finish(name: str, base: Pose, goal: Pose) -> Acting:
+    """Two fifths of a second from the last contact to rest."""
+    p = Acting(name, 0.4, base, looping=False, goal=goal, snap=2.0)
+    for side, late in (("_l", 0.0), ("_r", 0.02)):
+        p.hand(side, 0.0, 0.15 + late, {"hand": (0.175, 0.0, 0.255)})
+    p.back(0.02, 0.32)
+    return p
+
+
+def performances() -> list[Performance]:
+    """All clips of this kind."""
+    made: list[Performance] = []
+    for prefix, base, rest in (("", clapping, standing), ("sit_", seated_clapping, seated)):
+        for number, style in enumerate(STYLES, 1):
+            made.append(applaud(numbered(f"{prefix}clap", number), style, base()))
+            one = Applause(style.keys, 1, style.left, style.right, style.above, style.bob)
+            made.append(applaud(numbered(f"{prefix}clap_beat", number), one, base()))
+        made.append(begin(f"{prefix}clap_begin", rest(), base()))
+        made.append(finish(f"{prefix}clap_end", base(), rest()))
+    return made
+
+
+def numbered(name: str, number: int) -> str:
+    """``clap``, ``clap_2``, ``clap_3``: the first variant goes without a number."""
+    return name if number == 1 else f"{name}_{number}"
+
+
+def _of(share: Array, way: Array) -> Array:
+    result: Array = share[:, None] * way
     return result

@@ -18,7 +18,7 @@ SHIPPED = Path(__file__).with_name("spectator.glb")
 
 
 def build_spectator() -> Character:
-    """Make skeleton, meshes at three levels of detail, and all clips; takes about ten seconds."""
+    """Make skeleton, meshes at three levels of detail, and all clips; takes about 20 seconds."""
     skeleton = spectator_skeleton()
     meshes, *lower = spectator_meshes(skeleton)
     return Character(
@@ -33,7 +33,7 @@ def build_spectator() -> Character:
 
 def main(arguments: list[str]) -> None:
     """Write the spectator to the given path, or over the shipped file."""
-    write_glb(build_spectator(), arguments[0] if arguments else SHIPPED)
+    write_glb(build_spectator(), arguments[0] if arguments else SHIPPED, compact=True)
 
 
 if __name__ == "__main__":

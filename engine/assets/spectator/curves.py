@@ -61,12 +61,13 @@ def pose(base: Pose, **changes: Value) -> dict[str, Array]:
     """A copy of a pose with some channels set; a name without its side sets both sides."""
     result = {name: value.copy() for name, value in base.items()}
     for name, value in changes.items():
-        for channel in _sided(result, name):
+        for channel in sided(result, name):
             result[channel] = np.atleast_1d(np.asarray(value, dtype=np.float64))
     return result
 
 
-def _sided(known: Mapping[str, object], name: str) -> tuple[str, ...]:
+def sided(known: Mapping[str, object], name: str) -> tuple[str, ...]:
+    """The channels that a name with or without its side means: ``hand`` is both hands."""
     return (name,) if name in known else (name + "_l", name + "_r")
 
 
@@ -103,7 +104,7 @@ class Performance:
 
     def key(self, name: str, *keys: tuple[float, Value]) -> Performance:
         """Add offsets from the base pose at given times; a name without side moves both sides."""
-        for channel in _sided(self.base, name):
+        for channel in sided(self.base, name):
             width = self._curves[channel].shape[1]
             values = np.array([np.broadcast_to(np.asarray(v, float), (width,)) for _, v in keys])
             self._curves[channel] += keyed(np.array([t for t, _ in keys]), values, self.times)
@@ -113,7 +114,7 @@ class Performance:
         """Move channels from the base pose to another; `keys` are (seconds, share of the way)."""
         share = keyed(np.array([t for t, _ in keys]), np.array([[s] for _, s in keys]), self.times)
         for name in names:
-            for channel in _sided(self.base, name):
+            for channel in sided(self.base, name):
                 self._curves[channel] += share * (goal[channel] - self.base[channel])
         return self
 
@@ -137,7 +138,7 @@ class Performance:
 
     def add(self, name: str, offsets: Array) -> Performance:
         """Add any offsets (F, C) to a channel."""
-        for channel in _sided(self.base, name):
+        for channel in sided(self.base, name):
             self._curves[channel] = self._curves[channel] + offsets
         return self
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .applause import add_claps
-from .curves import Performance, pose
+from .curves import Performance
 from .poses import seated, standing
 
 
@@ -107,20 +106,6 @@ def sit_idle_2() -> Performance:
     p.wave("spine", (0.010, 0.010, 0.012), 1).wave("head", (0.014, 0.022, 0.012), 3)
     p.wave("head", (0.007, 0.010, 0.008), 5, 0.1)
     return p
-
-
-def sit_clap() -> Performance:
-    """Eight claps in front of the chest, leaning forward a little."""
-    base = pose(
-        seated(),
-        hold=0.0,
-        hips_turn=(-0.10, 0.0, 0.0),
-        spine=(0.12, 0.02, 0.0),
-        chest=(0.12, 0.03, 0.01),
-        neck=(0.02, -0.02, 0.0),
-        head=(-0.12, -0.02, 0.0),
-    )
-    return add_claps(Performance("sit_clap", 2.4, base), height=0.075)
 
 
 def stand_up() -> Performance:

@@ -13,12 +13,13 @@ from ...animation.skeleton import Skeleton
 from ..character import Material, SkinnedMesh
 from ..gltf_mesh import vertex_normals
 from ..levels import level_name
+from .applause import ORDINARY, applaud
 from .body import REGIONS, occlusion, region_fields, surface_normals
 from .borders import cut
 from .decimation import reduce_surface
 from .face import face_features
 from .meshing import Triangles, Vertices, half_surface, mirrored, rim_vertices, thin_out
-from .seated import sit_clap
+from .poses import seated_clapping
 from .skinning import SurfaceWeights
 
 MATERIALS = (
@@ -132,7 +133,7 @@ def _four_influences(
 
 def _clapping(skeleton: Skeleton, vertices: Vertices, weights: NDArray[np.float64]) -> Vertices:
     """Vertices (V, 3) in a pose that bends hips, knees and elbows: seated, clapping."""
-    clip = sit_clap().clip(skeleton)
+    clip = applaud("sit_clap", ORDINARY, seated_clapping()).clip(skeleton)
     kinematics = Kinematics(skeleton, 1)
     palettes = np.empty((1, skeleton.joint_count, 3, 4), dtype=np.float32)
     first = (part[:1] for part in (clip.rotation, clip.translation, clip.scale))

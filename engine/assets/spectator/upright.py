@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from .applause import add_claps
-from .curves import Performance, pose
+from .curves import Performance
 from .poses import standing
 
 
@@ -124,18 +123,3 @@ def stand_idle_2() -> Performance:
     p.wave("hand_l", (0.004, 0.002, 0.012), 3).wave("hand_r", (0.004, 0.002, 0.010), 2, 0.1)
     p.wave("head", (0.010, 0.014, 0.010), 5)
     return p
-
-
-def clap() -> Performance:
-    """Eight claps, swaying on the knees."""
-    base = pose(
-        standing(),
-        hips=(0.0, 0.943, -0.008),
-        chest=(0.05, 0.03, 0.012),
-        neck=(0.06, 0.0, 0.0),
-        head=(-0.12, 0.0, 0.0),
-    )
-    p = Performance("clap", 2.4, base)
-    p.swing("hips", (0.016, 0.0, 0.004), 1).swing("hips", (0.0, 0.005, 0.0), 4, 0.25)
-    p.swing("hips_turn", (0.008, 0.03, -0.02), 1)
-    return add_claps(p, height=0.095)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -217,3 +218,35 @@ def test_levels_are_sorted_by_their_number() -> None:
         ["a_lod1", "b_LOD1"],
         ["b_LOD3"],
     ]
+
+
+def test_compact_files_are_smaller_and_hardly_differ(tmp_path: Path) -> None:
+    short = make_clip("short")
+    smooth = replace(short, name="smooth", duration=2.0)
+    rng = np.random.default_rng(4)
+    shaken = smooth.rotation + 0.05 * rng.normal(size=smooth.rotation.shape)
+    shaken /= np.linalg.norm(shaken, axis=2, keepdims=True)
+    rough = replace(smooth, name="rough", rotation=shaken.astype(np.float32))
+    character = Character(
+        name="small", skeleton=make_skeleton(), meshes=(make_mesh("body", 0, 1.0, 1),),
+        materials=(Material("skin"),), clips=(short, smooth, rough),
+    )  # fmt: skip
+    whole, small = character_to_glb(character), character_to_glb(character, compact=True)
+    assert len(small) < 0.8 * len(whole)
+    (length,) = struct.unpack_from("<I", small, 12)
+    document = json.loads(small[20 : 20 + length])
+    counts = []
+    for animation in document["animations"]:
+        keys = [document["accessors"][s["output"]] for s in animation["samplers"]]
+        assert {k["componentType"] for k in keys if k["type"] == "VEC4"} == {5122}
+        counts.append(max(k["count"] for k in keys))
+    # Every second key of the smooth long clip is left out, and none of the others.
+    assert counts == [61, 31, 61]
+    path = tmp_path / "small.glb"
+    path.write_bytes(small)
+    for made, read in zip((short, smooth, rough), load_gltf(path).clips, strict=True):
+        assert read.duration == pytest.approx(made.duration)
+        every = (read.frame_count - 1) // (made.frame_count - 1)
+        dots = np.abs(np.einsum("fjk,fjk->fj", read.rotation[::every], made.rotation))
+        assert 2 * np.arccos(np.clip(dots, 0, 1)).max() < (0.004 if made is smooth else 0.001)
+        np.testing.assert_allclose(read.translation[::every], made.translation, atol=0.004)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from types import ModuleType
 
@@ -11,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tifo.engine.animation import Clip, ClipBank
+from tifo.engine.assets.spectator import builtin_spectator
 from tifo.engine.crowd.motions import (
     MotionLibrary,
     MotionStreams,
@@ -85,7 +87,44 @@ def test_the_built_in_names(factories: ModuleType) -> None:
     assert set(innate) == {
         "sit_idle", "sit_idle_2", "stand_idle", "stand_idle_2", "sit_clap", "clap", "wave"
     }  # fmt: skip
-    assert innate["sit_idle"] + innate["sit_idle_2"] == pytest.approx(120 / 145.5)
+    assert innate["sit_idle"] == innate["sit_idle_2"] == pytest.approx(60 / 145.5)
+
+
+def test_what_the_spectator_does_by_itself() -> None:
+    """Motions that need a reason are nobody's by accident, and the roles keep their shares."""
+    library = sort_motions(builtin_spectator().clips)
+    innate = _innate(library)
+    kinds = {"sit_idle", "stand_idle", "sit_clap", "clap", "wave"}
+    assert {re.sub(r"_\d+$", "", name) for name in innate} == kinds
+    share = {
+        kind: sum(w for name, w in innate.items() if re.fullmatch(rf"{kind}(_\d+)?", name))
+        for kind in kinds
+    }
+    assert share == pytest.approx(
+        {"sit_idle": 120 / 145.5, "stand_idle": 20 / 145.5, "sit_clap": 3 / 145.5,
+         "clap": 1 / 145.5, "wave": 1.5 / 145.5}
+    )  # fmt: skip
+    assert {re.sub(r"_\d+$", "", name) for name in library.names} == {
+        *kinds, "cheer", "fist_pump", "jump", "dismay", "disappointed"
+    }  # fmt: skip
+    sizes = {role: len(motions) for role, motions in library.roles.items()}
+    assert sizes == {Role.CALM: 10, Role.APPLAUD: 8, Role.CHEER: 16, Role.DISMAY: 5}
+
+
+@pytest.mark.parametrize(("most", "left"), [(None, 39), (64, 39), (16, 16), (10, 10), (1, 10)])
+def test_with_few_streams_variants_are_left_out(most: int | None, left: int) -> None:
+    library = sort_motions(builtin_spectator().clips, most)
+    assert len(library.names) == left
+    assert {"sit_idle", "stand_idle", "clap", "sit_clap", "cheer", "jump"} <= set(library.names)
+    assert all(len(motions) for motions in library.roles.values())
+    assert library.innate.sum() == pytest.approx(1.0)
+    assert sum(
+        float(w)
+        for name, w in zip(library.names, library.innate, strict=True)
+        if "sit_idle" in name
+    ) == pytest.approx(120 / 145.5)
+    numbers = [int(n) for name in library.names for n in re.findall(r"_(\d+)$", name)]
+    assert max(numbers, default=1) <= (2 if left == 16 else 5)
 
 
 @pytest.mark.parametrize("name", ["", "clip 0", "Take 001", "Death", "Cheer", "sit_idle", "No"])
