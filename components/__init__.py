@@ -9,6 +9,7 @@ from .appearance import Appearance
 from .detail import Detail, Level
 from .dilation import Dilation, DilationRequest
 from .motion import MotionState
+from .party import Party, PartyKind
 from .placement import Placement
 from .seat import Seat, Section
 from .team import Team
@@ -23,6 +24,8 @@ __all__ = [
     "DilationRequest",
     "Level",
     "MotionState",
+    "Party",
+    "PartyKind",
     "Placement",
     "Seat",
     "Section",

@@ -69,3 +69,9 @@ def crowd(factories: ModuleType) -> Crowd:
         library=library,
         rng=rng,
     )
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Where a test's chances come from."""
+    return np.random.default_rng(12)
