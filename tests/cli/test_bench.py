@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -85,6 +86,23 @@ def test_scripting(capsys: pytest.CaptureFixture[str]) -> None:
     assert result["emits_per_second"] == pytest.approx(1e6 / result["emit_us"], rel=0.01)  # type: ignore[operator]
     assert main(["bench", *words]) == 0
     assert "emissions a second" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_behaviour_prints_published_figures_and_draws(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    plot = tmp_path / "curves.png"
+    words = ("behaviour", "--agents", "12000", "--runs", "5", "--plot", str(plot))
+    result = figures(capsys, *words)
+    situations = result["situations"]
+    assert isinstance(situations, dict)
+    assert set(situations) == {"quiet", "all_clap", "wave"}
+    shown = result["figures"]
+    assert isinstance(shown, list)
+    assert len(shown) > 15
+    assert all(set(figure) == {"name", "measured", "published"} for figure in shown)
+    assert plot.stat().st_size > 20_000
 
 
 @pytest.mark.gl

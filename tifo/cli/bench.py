@@ -6,6 +6,8 @@ tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
 memory: what poses and clips take, streamed and baked, and what a tick copies.
 scripting: a frame of many nodes with `_process`, and emissions of a signal.
+behaviour: applause, rhythm, waves, emotions and parties: what comes out of the models beside what
+  is published of people, and what a tick of them costs; with --plot, curves as a picture.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame", "memory", "scripting")
+BENCHMARKS = ("evaluate", "tick", "frame", "memory", "behaviour", "scripting")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,6 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--listeners", type=int, default=10, metavar="N", help="of a signal (scripting)"
     )
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
+    parser.add_argument("--plot", metavar="FILE.png", help="draw curves (behaviour)")
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
@@ -103,6 +106,11 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
             return scripting(
                 nodes=options.nodes, listeners=options.listeners, runs=options.runs or 300
             )
+    elif options.benchmark == "behaviour":
+        from ..benchmarks.behaviour import behaviour
+
+        def measure() -> dict[str, Any]:
+            return behaviour(agents=options.agents, runs=options.runs or 200, plot=options.plot)
 
     else:
         from ..benchmarks.frame import frame
@@ -134,13 +142,16 @@ def _report(console: Any, result: dict[str, Any]) -> None:
         keys = ("median_ms", "p10_ms", "p90_ms", "min_ms")
         table.add_row(name, *(f"{figures[key]:.3f}" for key in keys), str(figures["runs"]))
 
-    row("whole", result)
-    for group in ("systems", "cameras"):
+    if result["benchmark"] != "behaviour":
+        row("whole", result)
+    for group in ("systems", "cameras", "situations"):
         for name, figures in result.get(group, {}).items():
-            row(f"  {name}", figures)
+            row(f"  {name.replace('_', ' ')}", figures)
     if "frame_after_adding" in result:
         row("after a node was added", result["frame_after_adding"])
     console.print(table)
+    if "figures" in result:
+        _report_figures(console, result["figures"])
     if "emit_us" in result:
         console.print(
             f"{result['emits_per_second']:,} emissions a second, {result['emit_us']:.2f} us each; "
@@ -186,6 +197,15 @@ def _report_memory(console: Any, result: dict[str, Any]) -> None:
         f"{result['clip_baked_frames']:.0f} frames"
     )
     _report_environment(console, result)
+
+
+def _report_figures(console: Any, figures: list[dict[str, str]]) -> None:
+    from rich.table import Table
+
+    table = Table("", "measured here", "published")
+    for figure in figures:
+        table.add_row(figure["name"], figure["measured"], figure["published"])
+    console.print(table)
 
 
 def _report_environment(console: Any, result: dict[str, Any]) -> None:
