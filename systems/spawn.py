@@ -89,11 +89,12 @@ def spawn_crowd(
     )
     clips = character.clips or (rest_clip(character.skeleton),)
     # Every motion should have streams of its own, and twins of them where there are body types.
-    bodies = spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES
-    library = sort_motions(clips, most=max(spec.streams // (6 if bodies else 2), 1))
+    rows = spec.streams - spec.spare_streams
+    bodies = spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES
+    library = sort_motions(clips, most=max(rows // (6 if bodies else 2), 1))
     plans = None
     if spec.poses == "streams":
-        plans = find_ways(clips, library, spec.streams, spec.history)
+        plans = find_ways(clips, library, spec.streams - spec.spare_streams, spec.history)
     if plans is not None:
         library = add_ways(library, plans, len(clips))
     figure = make_figure(character)
@@ -196,15 +197,16 @@ def _add_streams(
     )
     ways_need = 0 if plans is None else sum(plan.streams(spec.history) for plan in plans)
     motions = len(crowd.library.names)
+    rows = spec.streams - spec.spare_streams
     own = 0
-    if spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES and pool.twins.types:
-        own = affordable_streams(spec.streams, motions, ways_need, len(pool.twins.types))
+    if spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES and pool.twins.types:
+        own = affordable_streams(rows, motions, ways_need, len(pool.twins.types))
     parts: list[Any] = [pool]
     kept = np.zeros(spec.streams, np.bool_)
     if plans is None:
-        streams = start_streams(pool, crowd.library, own or spec.streams, rng)
+        streams = start_streams(pool, crowd.library, own or rows, rng)
     else:
-        many = own or spec.streams - ways_need
+        many = own or rows - ways_need
         streams = start_streams(pool, without_ways(crowd.library), many, rng)
         ways, streams = start_ways(pool, crowd.library, plans, streams, spec.history)
         kept[np.concatenate(ways.rows)] = True
@@ -212,7 +214,7 @@ def _add_streams(
     if own:
         whole = np.zeros(motions, np.bool_)
         whole[motions if plans is None else motions - len(plans) :] = True
-        streams = start_twins(pool, streams, whole)
+        streams = start_twins(pool, streams, whole, spec.spare_streams)
         twins = pool.twins.table[1:, kept]
         kept[twins[twins >= 0]] = True
     if spec.rest_idle:

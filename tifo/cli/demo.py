@@ -1,5 +1,7 @@
 """Play the stadium demo in a window; without a display, render a picture and a clip.
 
+``--scene lab`` shows each feature of the animation on a few people, with captions.
+
 Keys: G and H goals of the home and the away side, B or a click the ball into the crowd where the
 mouse points, 1 2 3 cameras, C orbit or fly, WASD QE move, drag and scroll look, F fullscreen,
 V vsync, P pause, F12 screenshot, F1 help, Esc quit.
@@ -39,6 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``tifo demo``."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     texts = {field.name: field.metadata["help"] for field in fields(CrowdSpec)}
+    parser.add_argument(
+        "--scene",
+        choices=("stadium", "lab"),
+        default="stadium",
+        help="a match, or each feature of the animation on a few people; of the crowd's options "
+        "below the lab takes only --seed",
+    )
     what = parser.add_argument_group("the stadium and its crowd")
     what.add_argument("--spec", metavar="FILE", help="crowd spec in TOML; options override it")
     what.add_argument("--character", metavar="FILE", help=texts["character"] + " (.glb .gltf .bvh)")
@@ -87,6 +96,7 @@ def run(options: argparse.Namespace) -> int:
         record=options.record,
         fullscreen=options.fullscreen,
         vsync=not options.no_vsync,
+        scene=options.scene,
     )
     return play(show, headless=options.headless)
 
