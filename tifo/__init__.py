@@ -33,10 +33,13 @@ from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
+from .engine.export import Exported, Recording
 from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.crowd import Crowd
+from .systems.export import export_gltf, export_usd
+from .systems.recording import Recorder
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
@@ -97,6 +100,7 @@ __all__ = [
     "Ease",
     "Event",
     "Export",
+    "Exported",
     "FreeCamera",
     "FreedError",
     "Goal",
@@ -128,6 +132,8 @@ __all__ = [
     "ProcessCallback",
     "ProcessMode",
     "Quaternion",
+    "Recorder",
+    "Recording",
     "RenderSystem",
     "Resource",
     "SceneTree",
@@ -163,6 +169,8 @@ __all__ = [
     "controllers",
     "ease",
     "export",
+    "export_gltf",
+    "export_usd",
     "exports_of",
     "find_loop",
     "humanoid",
