@@ -91,7 +91,7 @@ def spawn_crowd(
     # Every motion should have streams of its own, and twins of them where there are body types.
     rows = spec.streams - spec.spare_streams
     bodies = spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES
-    library = sort_motions(clips, most=max(rows // (6 if bodies else 2), 1))
+    library = sort_motions(clips, most=max(rows // (7 if bodies else 2), 1))
     plans = None
     if spec.poses == "streams":
         plans = find_ways(clips, library, spec.streams - spec.spare_streams, spec.history)

@@ -45,13 +45,16 @@ from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
+from .engine.export import Exported, Recording
 from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.crowd import Crowd
+from .systems.export import export_gltf, export_usd
 from .systems.part import Part
 from .systems.parts import add_part, remove_part
 from .systems.props import give_props
+from .systems.recording import Recorder
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
@@ -116,6 +119,7 @@ __all__ = [
     "Emotion",
     "Event",
     "Export",
+    "Exported",
     "FreeCamera",
     "FreedError",
     "Goal",
@@ -149,6 +153,8 @@ __all__ = [
     "ProcessMode",
     "Prop",
     "Quaternion",
+    "Recorder",
+    "Recording",
     "RenderSystem",
     "Resource",
     "SceneTree",
@@ -186,6 +192,8 @@ __all__ = [
     "controllers",
     "ease",
     "export",
+    "export_gltf",
+    "export_usd",
     "exports_of",
     "find_loop",
     "give_props",

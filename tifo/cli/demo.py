@@ -40,6 +40,24 @@ _FROM_SPEC = (
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``tifo demo``."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    add_crowd_arguments(parser)
+    how = parser.add_argument_group("the picture")
+    how.add_argument("--size", default="1280x720", metavar="WxH", help="pixels, 1280x720 if absent")
+    how.add_argument(
+        "--camera", choices=("tv", "close", "bowl"), default="tv", help="where to begin"
+    )
+    how.add_argument("--fullscreen", action="store_true", help="open the window fullscreen")
+    how.add_argument("--no-vsync", action="store_true", help="draw as often as possible")
+    how.add_argument("--headless", action="store_true", help="no window: render offscreen")
+    how.add_argument(
+        "--seconds", type=float, metavar="S", help="stop after S seconds (headless: 6 if absent)"
+    )
+    how.add_argument("--screenshot", metavar="PNG", help="write the last picture")
+    how.add_argument("--record", metavar="MP4", help="write a clip")
+
+
+def add_crowd_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that `spec_from` reads."""
     texts = {field.name: field.metadata["help"] for field in fields(CrowdSpec)}
     parser.add_argument(
         "--scene",
@@ -67,19 +85,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             f"--{name}", type=kind, metavar=_metavar(kind), help=texts[name], default=None
         )
     what.add_argument("--lod", choices=("on", "off"), help=texts["lod"])
-    how = parser.add_argument_group("the picture")
-    how.add_argument("--size", default="1280x720", metavar="WxH", help="pixels, 1280x720 if absent")
-    how.add_argument(
-        "--camera", choices=("tv", "close", "bowl"), default="tv", help="where to begin"
-    )
-    how.add_argument("--fullscreen", action="store_true", help="open the window fullscreen")
-    how.add_argument("--no-vsync", action="store_true", help="draw as often as possible")
-    how.add_argument("--headless", action="store_true", help="no window: render offscreen")
-    how.add_argument(
-        "--seconds", type=float, metavar="S", help="stop after S seconds (headless: 6 if absent)"
-    )
-    how.add_argument("--screenshot", metavar="PNG", help="write the last picture")
-    how.add_argument("--record", metavar="MP4", help="write a clip")
 
 
 def run(options: argparse.Namespace) -> int:
