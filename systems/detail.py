@@ -6,7 +6,7 @@ import esper
 
 from ..components import Attachment, Detail, PartBits, Placement, Seat, View
 from ..engine.clock import Clock
-from ..engine.crowd.detail import select_detail, select_part
+from ..engine.crowd.detail import Bounds, select_detail, select_part
 from ..engine.crowd.figure import Figure
 from .query import crowds
 
@@ -39,6 +39,10 @@ class DetailSystem(esper.Processor):
         view = views[0][1][0]
         for entity, (detail, placement, seat) in crowds(Detail, Placement, Seat):
             figure = esper.component_for_entity(entity, Figure)
+            bounds = esper.try_component(entity, Bounds)
+            if bounds is None or bounds.version != placement.version:
+                bounds = Bounds.of(placement)
+                esper.add_component(entity, bounds)
             select_detail(
                 detail,
                 placement,
@@ -47,6 +51,7 @@ class DetailSystem(esper.Processor):
                 view,
                 levels=self._levels,
                 coarseness=self.coarseness,
+                bounds=bounds,
             )
         for _, (attachment, detail) in crowds(Attachment, Detail):
             parent = esper.try_component(attachment.parent, Detail)
