@@ -36,6 +36,7 @@ from ..engine.crowd.builds import draw_bodies
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
 from ..engine.crowd.figure_masks import figure_masks
+from ..engine.crowd.looks import draw_choices
 from ..engine.crowd.motions import Role, sort_motions, start_streams
 from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
@@ -100,7 +101,8 @@ def spawn_crowd(
     occupied = occupancy_mask(plan, spec, rng_seats)
     side = assign_sides(plan, spec, rng_sides)
     count = plan.count
-    body, size = draw_bodies(count, spec.children, spec.old, figure.height, rng_bodies)
+    body, size = draw_bodies(count, spec.children, spec.old, figure.height, rng_bodies, spec.women)
+    body.choice = draw_choices(character, body, rng_bodies)
     team = Team(side, draw_fervour(side, spec, rng_deeds))
     emotion = draw_emotion(team.fervour, spec.embarrassment, rng_deeds)
     table = compile_table(load_table(spec.behaviour), library)

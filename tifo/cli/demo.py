@@ -25,6 +25,7 @@ _FROM_SPEC = (
     "embarrassment",
     "children",
     "old",
+    "women",
     "streams",
     "history",
     "slots",
@@ -50,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="metres a unit of BVH files, guessed if absent",
     )
     kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float}
-    kinds.update({"embarrassment": float, "children": float, "old": float})
+    kinds.update({"embarrassment": float, "children": float, "old": float, "women": float})
     kinds.update({"poses": str, "offsets": str, "behaviour": str})
     for name in _FROM_SPEC:
         kind = kinds.get(name, int)

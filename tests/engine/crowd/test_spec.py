@@ -37,6 +37,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "away_share": st.floats(0.0, 0.5),
     "children": st.floats(0.0, 0.5),
     "old": st.floats(0.0, 0.5),
+    "women": st.floats(0.0, 1.0),
     "props": st.floats(0.0, 1.0),
     "streams": st.integers(1, 256),
     "history": st.integers(2, 254),
