@@ -41,6 +41,7 @@ from .engine.behaviour import BehaviourTable, load_table
 from .engine.behaviour.events import BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
+from .engine.crowd.kits import PATTERNS, Kit
 from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
@@ -48,6 +49,7 @@ from .engine.errors import AssetError, GraphicsError, TifoError
 from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
+from .systems.casting import clone_report
 from .systems.crowd import Crowd
 from .systems.part import Part
 from .systems.parts import add_part, remove_part
@@ -99,6 +101,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "PATTERNS",
     "PROPS",
     "AgentAnimID",
     "Appearance",
@@ -132,6 +135,7 @@ __all__ = [
     "InputEventMouseMotion",
     "InputMap",
     "JointOverride",
+    "Kit",
     "LookAt",
     "Loop",
     "Material",
@@ -183,6 +187,7 @@ __all__ = [
     "builtin_spectator",
     "camera_presets",
     "character_of",
+    "clone_report",
     "controllers",
     "ease",
     "export",
