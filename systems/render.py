@@ -19,6 +19,7 @@ from ..engine.assets.character import Character
 from ..engine.clock import Clock
 from ..engine.crowd.figure import Figure
 from ..engine.crowd.physique import Physique
+from ..engine.crowd.regions import Regions
 from ..engine.crowd.stadium_mesh import StadiumMesh
 from ..engine.overrides import OverrideSet
 from ..engine.render.crowd_inputs import CrowdColumns
@@ -128,6 +129,7 @@ def _crowd_columns(entity: int, looks: Appearance, detail: Detail) -> CrowdColum
         esper.try_component(entity, OverrideSet),
         esper.try_component(entity, Body),
         esper.try_component(entity, Physique),
+        esper.try_component(entity, Regions),
     )
 
 

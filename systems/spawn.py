@@ -39,6 +39,7 @@ from ..engine.crowd.figure_masks import figure_masks
 from ..engine.crowd.motions import Role, sort_motions, start_streams
 from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
+from ..engine.crowd.regions import find_regions
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.crowd.twin_streams import affordable_streams, start_twins
@@ -55,6 +56,7 @@ from ..engine.streams.slots import SlotPool
 from ..engine.streams.stream_needs import StreamNeeds
 from ..engine.streams.uniques import UniquePool
 from .behaviour import columns_of
+from .casting import cast_crowd
 from .crowd import Crowd
 
 STREAMS_FOR_BODIES = 128
@@ -83,9 +85,9 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(7)
-    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds = map(
-        np.random.default_rng, seeds
+    seeds = np.random.SeedSequence(spec.seed).spawn(8)
+    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds, rng_casting = (
+        map(np.random.default_rng, seeds)
     )
     clips = character.clips or (rest_clip(character.skeleton),)
     # Every motion should have streams of its own, and twins of them where there are body types.
@@ -119,7 +121,7 @@ def spawn_crowd(
         placement=_place(plan, figure, size, rng_place),
         body=body,
         team=team,
-        appearance=draw_appearance(side, rng_looks),
+        appearance=draw_appearance(side, rng_looks, kind=body.kind),
         motion=MotionState.allocate(shown),
         emotion=emotion,
         behaviour=behaviour,
@@ -146,6 +148,7 @@ def spawn_crowd(
         table,
         guidance,
         figure,
+        find_regions(character, figure, tint=spec.tint),
         character,
     )
     if plans is not None:
@@ -155,6 +158,10 @@ def spawn_crowd(
         _add_baked(crowd, bank, figure, rng_motion)
     else:
         _add_streams(crowd, bank, figure, plans, offsets or spec.offsets, rng_motion)
+    if spec.casting:
+        # Offsets that the user gave stay with whom they were given to.
+        own = callable(offsets or spec.offsets)
+        cast_crowd(crowd, rng_casting, motions=not own)
     types = crowd.pool.twins.types if crowd.pool is not None and len(crowd.pool.twins) else ()
     adult = SPECTATOR_HEIGHT / figure.height
     crowd.physique = measure(character.skeleton, figure, types, bank, library, adult)

@@ -41,6 +41,7 @@ from .engine.behaviour import BehaviourTable, load_table
 from .engine.behaviour.events import BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
+from .engine.crowd.kits import PATTERNS, Kit
 from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
@@ -49,6 +50,7 @@ from .engine.export import Exported, Recording
 from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
+from .systems.casting import clone_report
 from .systems.crowd import Crowd
 from .systems.export import export_gltf, export_usd
 from .systems.part import Part
@@ -102,6 +104,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "PATTERNS",
     "PROPS",
     "AgentAnimID",
     "Appearance",
@@ -136,6 +139,7 @@ __all__ = [
     "InputEventMouseMotion",
     "InputMap",
     "JointOverride",
+    "Kit",
     "LookAt",
     "Loop",
     "Material",
@@ -189,6 +193,7 @@ __all__ = [
     "builtin_spectator",
     "camera_presets",
     "character_of",
+    "clone_report",
     "controllers",
     "ease",
     "export",

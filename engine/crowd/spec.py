@@ -42,7 +42,7 @@ _WHOLE = {
     "uniques": (0, 2048),
     "seed": (0, 2**63 - 1),
 }
-_FLAGS = ("rest_idle", "lod")
+_FLAGS = ("rest_idle", "lod", "casting")
 _REAL = {
     "step": (0.3, 10.0),
     "rise": (0.0, 10.0),
@@ -53,6 +53,7 @@ _REAL = {
     "children": (0.0, 1.0),
     "old": (0.0, 1.0),
     "props": (0.0, 1.0),
+    "tint": (0.0, 1.0),
     "ultras": (0.0, 1.0),
     "embarrassment": (0.0, 1.0),
 }
@@ -105,6 +106,11 @@ class CrowdSpec:
     props
         Share of a side's supporters who have a cap, a scarf or a flag in its colours. They are made
         for the built-in spectator; other characters have none.
+    tint
+        How much of the agents' colours characters take on whose materials don't say what they are,
+        part by part; 0 leaves them as their file has them.
+    casting
+        Whether neighbours who were drawn too much alike swap clothes or motions with others.
     poses
         Whether motions are streamed, or every frame of every clip is baked beforehand.
     offsets
@@ -147,6 +153,8 @@ class CrowdSpec:
     props: float = field(
         default=0.35, metadata=_help("share of supporters with a cap, a scarf or a flag")
     )
+    tint: float = field(default=1.0, metadata=_help("colours of agents on imported characters"))
+    casting: bool = field(default=True, metadata=_help("keep neighbours from being clones"))
     poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")

@@ -31,6 +31,7 @@ _FROM_SPEC = (
     "history",
     "slots",
     "props",
+    "tint",
     "poses",
     "offsets",
     "seed",
@@ -76,7 +77,7 @@ def add_crowd_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="METRES",
         help="metres a unit of BVH files, guessed if absent",
     )
-    kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float}
+    kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float, "tint": float}
     kinds.update({"embarrassment": float, "children": float, "old": float})
     kinds.update({"poses": str, "offsets": str, "behaviour": str})
     for name in _FROM_SPEC:

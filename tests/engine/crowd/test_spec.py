@@ -38,6 +38,8 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "children": st.floats(0.0, 0.5),
     "old": st.floats(0.0, 0.5),
     "props": st.floats(0.0, 1.0),
+    "tint": st.floats(0.0, 1.0),
+    "casting": st.booleans(),
     "streams": st.integers(1, 256),
     "spare_streams": st.just(0),
     "history": st.integers(2, 254),
