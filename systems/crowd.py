@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,14 +40,19 @@ from ..engine.streams.ladder import BlendLadder, Focus
 from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
+from .crowd_drawing import DrawingCalls
 from .crowd_overlays import BLEND_SECONDS, OverlayCalls
+from .crowd_queries import QueryCalls
+
+if TYPE_CHECKING:
+    from .render_embedded import CrowdMirrors
 
 FOCUS_RADIUS = 60.0
 """Metres around a focus in which agents never jump."""
 
 
 @dataclass(slots=True, eq=False)
-class Crowd(OverlayCalls):
+class Crowd(OverlayCalls, QueryCalls, DrawingCalls):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -68,6 +73,10 @@ class Crowd(OverlayCalls):
         Clip events; None in a baked crowd.
     physique
         Proportions of the character, its body types and the seats.
+    world
+        Name of the esper world that the entity lives in.
+    mirrors
+        Holds what `draw` keeps on the GPU, once it was called.
     baked
         Baked poses and who shows which; None in a streamed crowd.
     """
@@ -95,6 +104,8 @@ class Crowd(OverlayCalls):
     clip_feed: ClipEventFeed | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
     physique: Physique | None = None
+    world: str = "default"
+    mirrors: list[CrowdMirrors] = field(default_factory=list)
 
     def __len__(self) -> int:
         """Number of agents, absent ones included."""

@@ -19,6 +19,7 @@ from ..engine.clock import Clock
 from ..engine.crowd.figure import Figure
 from ..engine.crowd.physique import Physique
 from ..engine.crowd.stadium_mesh import StadiumMesh
+from ..engine.gl.state import takes_srgb_bytes, write_srgb
 from ..engine.overrides import OverrideSet
 from ..engine.render.crowd_inputs import CrowdColumns
 from ..engine.render.crowd_renderer import CrowdRenderer, DrawCounts
@@ -56,16 +57,29 @@ class RenderSystem(esper.Processor):
         if not views:
             return
         view = views[0][1][0]
-        frame = Frame(view.view, view.projection, self.size, clock.pose_tick, clock.alpha)
+        encode = takes_srgb_bytes()
+        self.draw(
+            Frame(
+                view.view, view.projection, self.size, clock.pose_tick, clock.alpha, encode=encode
+            )
+        )
+
+    def draw(self, frame: Frame, only: int | None = None) -> None:
+        """Draw one picture: everything, or `only` the crowd that is this entity."""
         self.counts = DrawCounts()
+        write_srgb(not frame.encode)
         for entity, (character, detail) in crowds(Character, Detail):
+            if only not in (None, entity):
+                continue
             renderer = self._crowds.get(entity)
             if renderer is None:
                 renderer = self._crowds[entity] = _renderer(entity, character, detail)
-            renderer.update(clock.pose_tick)
+            renderer.update(frame.tick)
             renderer.draw(frame)
             self.counts.triangles += renderer.counts.triangles
             self.counts.uploaded += renderer.counts.uploaded
+        if only is not None:
+            return
         for entity, (mesh,) in crowds(StadiumMesh):
             if entity not in self._stadiums:
                 self._stadiums[entity] = StadiumPass(mesh)

@@ -104,6 +104,7 @@ def spawn_crowd(
         library=library,
         events=EventQueue(),
         overrides=OverrideSet(character.skeleton, count),
+        world=str(esper.current_world),
     )
     crowd.entity = esper.create_entity(
         crowd.seat,
@@ -141,7 +142,7 @@ def _place(
     count = plan.count
     turn = rng.normal(0.0, 0.12, count).clip(-0.35, 0.35)
     return Placement(
-        position=plan.position,
+        position=plan.position.copy(),
         yaw=(plan.yaw + turn).astype(np.float32),
         scale=(size * SPECTATOR_HEIGHT / figure.height).astype(np.float32),
     )
@@ -159,7 +160,7 @@ def _add_streams(
     pool = StreamPool(
         crowd.character.skeleton,
         bank,
-        capacity=spec.streams,
+        capacity=spec.streams + spec.spare_streams,
         history=spec.history,
         markers=figure.joints,
         uniques=spec.uniques,
@@ -172,7 +173,8 @@ def _add_streams(
     if spec.children + spec.old > 0 and pool.twins.types:
         own = affordable_streams(spec.streams, motions, ways_need, len(pool.twins.types))
     parts: list[Any] = [pool]
-    kept = np.zeros(spec.streams, np.bool_)
+    kept = np.zeros(spec.streams + spec.spare_streams, np.bool_)
+    kept[spec.streams :] = True
     if plans is None:
         streams = start_streams(pool, crowd.library, own or spec.streams, rng)
     else:
@@ -184,11 +186,11 @@ def _add_streams(
     if own:
         whole = np.zeros(motions, np.bool_)
         whole[motions if plans is None else motions - len(plans) :] = True
-        streams = start_twins(pool, streams, whole)
+        streams = start_twins(pool, streams, whole, spec.spare_streams)
         twins = pool.twins.table[1:, kept]
         kept[twins[twins >= 0]] = True
     if spec.rest_idle:
-        parts.append(StreamNeeds(spec.streams, always=kept))
+        parts.append(StreamNeeds(len(kept), always=kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
     # before the first one.
     for tick in range(1 - spec.history, 1):

@@ -42,9 +42,13 @@ from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
 
 if TYPE_CHECKING:
+    from .engine.animation.controllers import OneShotRequest
+    from .engine.gl.adopted import AdoptedContext, adopt_context
     from .engine.gl.context import open_window
+    from .scripting import nodes
     from .scripting.easing import Ease, Trans, ease
     from .scripting.exports import Export, export, exports_of
+    from .scripting.hot_reload import HotReload
     from .scripting.input_events import (
         InputEvent,
         InputEventAction,
@@ -59,6 +63,17 @@ if TYPE_CHECKING:
     from .scripting.lifecycle import ProcessMode
     from .scripting.node import Node, is_instance_valid
     from .scripting.node3d import Node3D
+    from .scripting.nodes import (
+        Agent,
+        AnimationPlayer,
+        AnimationTree,
+        Ball,
+        Camera,
+        Player,
+        Section,
+        Stadium,
+        StateMachinePlayback,
+    )
     from .scripting.packed_scene import PackedScene, load_scene
     from .scripting.paths import NodePathError
     from .scripting.reports import FreedError, ScriptError
@@ -79,15 +94,22 @@ if TYPE_CHECKING:
     from .scripting.tween import Tween, TweenPause
     from .scripting.vectors import Quaternion, Vector3
     from .scripting.window_input import WindowInput
+    from .scripting.window_run import run
     from .systems.render import RenderSystem
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "AdoptedContext",
+    "Agent",
     "AgentAnimID",
+    "AnimationPlayer",
+    "AnimationTree",
     "Appearance",
     "AssetError",
+    "Ball",
     "BallHit",
+    "Camera",
     "CameraMode",
     "Character",
     "ClipEvent",
@@ -102,6 +124,7 @@ __all__ = [
     "Goal",
     "GraphicsError",
     "GroupCall",
+    "HotReload",
     "Humanoid",
     "Input",
     "InputEvent",
@@ -122,9 +145,11 @@ __all__ = [
     "Node3D",
     "NodePathError",
     "NotHumanoidError",
+    "OneShotRequest",
     "OverriddenJoints",
     "PackedScene",
     "Placement",
+    "Player",
     "ProcessCallback",
     "ProcessMode",
     "Quaternion",
@@ -135,10 +160,13 @@ __all__ = [
     "Schedule",
     "ScriptError",
     "Seat",
+    "Section",
     "Signal",
     "Simulation",
     "SkinnedMesh",
+    "Stadium",
     "Stage",
+    "StateMachinePlayback",
     "Stream",
     "StreamPool",
     "Task",
@@ -156,6 +184,7 @@ __all__ = [
     "add_loader",
     "add_motions",
     "add_systems",
+    "adopt_context",
     "build_seats",
     "builtin_spectator",
     "camera_presets",
@@ -174,10 +203,12 @@ __all__ = [
     "look_at",
     "loop_clip",
     "mirror_clip",
+    "nodes",
     "open_window",
     "pick_seat",
     "resource_root",
     "retarget",
+    "run",
     "save_resource",
     "save_scene",
     "set_resource_root",
@@ -190,6 +221,8 @@ __all__ = [
 _DRAWING = {
     "RenderSystem": "systems.render",
     "Stage": "scripting.stage",
+    "AdoptedContext": "engine.gl.adopted",
+    "adopt_context": "engine.gl.adopted",
     "open_window": "engine.gl.context",
 }
 _SCRIPTING = {
@@ -202,6 +235,8 @@ _SCRIPTING = {
     "lifecycle": "ProcessMode",
     "node": "Node is_instance_valid",
     "node3d": "Node3D",
+    "nodes": "Agent AnimationPlayer AnimationTree Ball Camera Player Section Stadium"
+    " StateMachinePlayback",
     "packed_scene": "PackedScene load_scene",
     "paths": "NodePathError",
     "reports": "FreedError ScriptError",
@@ -214,6 +249,8 @@ _SCRIPTING = {
     "tween": "Tween TweenPause",
     "vectors": "Quaternion Vector3",
     "window_input": "WindowInput",
+    "window_run": "run",
+    "hot_reload": "HotReload",
 }
 _LATE = _DRAWING | {
     name: f"scripting.{module}" for module, names in _SCRIPTING.items() for name in names.split()
@@ -222,6 +259,12 @@ _LATE = _DRAWING | {
 
 def __getattr__(name: str) -> Any:
     """Load what draws, and what scripts use, only when it is asked for."""
+    if name == "nodes":
+        from .scripting import nodes
+
+        return nodes
+    if name == "OneShotRequest":
+        return controllers.OneShotRequest
     if name not in _LATE:
         raise AttributeError(f"module 'tifo' has no attribute '{name}'")
     from importlib import import_module

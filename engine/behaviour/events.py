@@ -50,12 +50,19 @@ Event = Goal | BallHit
 
 
 class EventQueue:
-    """Events that wait for the next tick, in the order in which they were sent."""
+    """Events that wait for the next tick, in the order in which they were sent.
 
-    __slots__ = ("_pending",)
+    Attributes
+    ----------
+    heard
+        What was taken last: the events of the last pose tick.
+    """
+
+    __slots__ = ("_pending", "heard")
 
     def __init__(self) -> None:
         self._pending: list[Event] = []
+        self.heard: tuple[Event, ...] = ()
 
     def send(self, event: Event) -> None:
         """Queue an event."""
@@ -64,4 +71,5 @@ class EventQueue:
     def take(self) -> list[Event]:
         """All waiting events; the queue is empty afterwards."""
         taken, self._pending = self._pending, []
+        self.heard = tuple(taken)
         return taken

@@ -33,6 +33,7 @@ _WHOLE = {
     "columns": (1, MOST_ROWS),
     "sides": (1, 2),
     "streams": (1, 256),
+    "spare_streams": (0, 256),
     "history": (2, 254),
     "slots": (0, 8192),
     "uniques": (0, 2048),
@@ -76,6 +77,8 @@ class CrowdSpec:
         `neutrals` of all seats supports nobody; the rest is home.
     streams, history
         Animation streams and poses kept of each.
+    spare_streams
+        Stream rows that are left free for motions of your own.
     slots, uniques
         Agents that can blend from the middle of another blend at once, and motions that are not
         shared, such as live ones.
@@ -111,6 +114,7 @@ class CrowdSpec:
     children: float = field(default=0.06, metadata=_help("share of children"))
     old: float = field(default=0.1, metadata=_help("share of old people"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
+    spare_streams: int = field(default=0, metadata=_help("streams left free for your own motions"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
     uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))

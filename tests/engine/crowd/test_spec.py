@@ -38,6 +38,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "children": st.floats(0.0, 0.5),
     "old": st.floats(0.0, 0.5),
     "streams": st.integers(1, 256),
+    "spare_streams": st.integers(0, 256),
     "history": st.integers(2, 254),
     "slots": st.integers(0, 8192),
     "uniques": st.integers(0, 2048),
