@@ -34,10 +34,14 @@ class DetailSystem(esper.Processor):
     def process(self, clock: Clock) -> None:
         """One frame."""
         views = crowds(View)
-        if not views:
-            return
-        view = views[0][1][0]
+        if views:
+            self.select(views[0][1][0])
+
+    def select(self, view: View, only: int | None = None) -> None:
+        """Choose for a camera: in all crowds, or in `only` one."""
         for entity, (detail, placement, seat) in crowds(Detail, Placement, Seat):
+            if only not in (None, entity):
+                continue
             figure = esper.component_for_entity(entity, Figure)
             bounds = esper.try_component(entity, Bounds)
             if bounds is None or bounds.version != placement.version:

@@ -91,12 +91,12 @@ def spawn_crowd(
     )
     clips = character.clips or (rest_clip(character.skeleton),)
     # Every motion should have streams of its own, and twins of them where there are body types.
-    rows = spec.streams - spec.spare_streams
+    rows = spec.streams
     bodies = spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES
     library = sort_motions(clips, most=max(rows // (7 if bodies else 2), 1))
     plans = None
     if spec.poses == "streams":
-        plans = find_ways(clips, library, spec.streams - spec.spare_streams, spec.history)
+        plans = find_ways(clips, library, rows, spec.history)
     if plans is not None:
         library = add_ways(library, plans, len(clips))
     figure = make_figure(character)
@@ -131,6 +131,7 @@ def spawn_crowd(
         library=library,
         events=EventQueue(),
         overrides=OverrideSet(character.skeleton, count),
+        world=str(esper.current_world),
     )
     crowd.entity = esper.create_entity(
         crowd.seat,
@@ -177,7 +178,7 @@ def _place(
     count = plan.count
     turn = rng.normal(0.0, 0.12, count).clip(-0.35, 0.35)
     return Placement(
-        position=plan.position,
+        position=plan.position.copy(),
         yaw=(plan.yaw + turn).astype(np.float32),
         scale=(size * SPECTATOR_HEIGHT / figure.height).astype(np.float32),
     )
@@ -195,7 +196,7 @@ def _add_streams(
     pool = StreamPool(
         crowd.character.skeleton,
         bank,
-        capacity=spec.streams,
+        capacity=spec.streams + spec.spare_streams,
         history=spec.history,
         markers=figure.joints,
         uniques=spec.uniques,
@@ -204,12 +205,13 @@ def _add_streams(
     )
     ways_need = 0 if plans is None else sum(plan.streams(spec.history) for plan in plans)
     motions = len(crowd.library.names)
-    rows = spec.streams - spec.spare_streams
+    rows = spec.streams
     own = 0
     if spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES and pool.twins.types:
         own = affordable_streams(rows, motions, ways_need, len(pool.twins.types))
     parts: list[Any] = [pool]
-    kept = np.zeros(spec.streams, np.bool_)
+    kept = np.zeros(spec.streams + spec.spare_streams, np.bool_)
+    kept[spec.streams :] = True
     if plans is None:
         streams = start_streams(pool, crowd.library, own or rows, rng)
     else:
@@ -225,7 +227,7 @@ def _add_streams(
         twins = pool.twins.table[1:, kept]
         kept[twins[twins >= 0]] = True
     if spec.rest_idle:
-        parts.append(StreamNeeds(spec.streams, always=kept))
+        parts.append(StreamNeeds(len(kept), always=kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
     # before the first one.
     for tick in range(1 - spec.history, 1):

@@ -62,9 +62,13 @@ from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
 
 if TYPE_CHECKING:
+    from .engine.animation.controllers import OneShotRequest
+    from .engine.gl.adopted import AdoptedContext, adopt_context
     from .engine.gl.context import open_window
+    from .scripting import nodes
     from .scripting.easing import Ease, Trans, ease
     from .scripting.exports import Export, export, exports_of
+    from .scripting.hot_reload import HotReload
     from .scripting.input_events import (
         InputEvent,
         InputEventAction,
@@ -79,6 +83,17 @@ if TYPE_CHECKING:
     from .scripting.lifecycle import ProcessMode
     from .scripting.node import Node, is_instance_valid
     from .scripting.node3d import Node3D
+    from .scripting.nodes import (
+        Agent,
+        AnimationPlayer,
+        AnimationTree,
+        Ball,
+        Camera,
+        Player,
+        Section,
+        Stadium,
+        StateMachinePlayback,
+    )
     from .scripting.packed_scene import PackedScene, load_scene
     from .scripting.paths import NodePathError
     from .scripting.reports import FreedError, ScriptError
@@ -99,6 +114,7 @@ if TYPE_CHECKING:
     from .scripting.tween import Tween, TweenPause
     from .scripting.vectors import Quaternion, Vector3
     from .scripting.window_input import WindowInput
+    from .scripting.window_run import run
     from .systems.render import RenderSystem
 
 __version__ = "0.1.0"
@@ -106,12 +122,18 @@ __version__ = "0.1.0"
 __all__ = [
     "PATTERNS",
     "PROPS",
+    "AdoptedContext",
+    "Agent",
     "AgentAnimID",
+    "AnimationPlayer",
+    "AnimationTree",
     "Appearance",
     "AssetError",
+    "Ball",
     "BallHit",
     "Behaviour",
     "BehaviourTable",
+    "Camera",
     "CameraMode",
     "Character",
     "ClipEvent",
@@ -128,6 +150,7 @@ __all__ = [
     "Goal",
     "GraphicsError",
     "GroupCall",
+    "HotReload",
     "Humanoid",
     "Input",
     "InputEvent",
@@ -149,10 +172,12 @@ __all__ = [
     "Node3D",
     "NodePathError",
     "NotHumanoidError",
+    "OneShotRequest",
     "OverriddenJoints",
     "PackedScene",
     "Part",
     "Placement",
+    "Player",
     "ProcessCallback",
     "ProcessMode",
     "Prop",
@@ -166,10 +191,13 @@ __all__ = [
     "Schedule",
     "ScriptError",
     "Seat",
+    "Section",
     "Signal",
     "Simulation",
     "SkinnedMesh",
+    "Stadium",
     "Stage",
+    "StateMachinePlayback",
     "Stream",
     "StreamPool",
     "Task",
@@ -188,6 +216,7 @@ __all__ = [
     "add_motions",
     "add_part",
     "add_systems",
+    "adopt_context",
     "build_seats",
     "builtin_prop",
     "builtin_spectator",
@@ -212,11 +241,13 @@ __all__ = [
     "look_at",
     "loop_clip",
     "mirror_clip",
+    "nodes",
     "open_window",
     "pick_seat",
     "remove_part",
     "resource_root",
     "retarget",
+    "run",
     "save_resource",
     "save_scene",
     "set_resource_root",
@@ -229,6 +260,8 @@ __all__ = [
 _DRAWING = {
     "RenderSystem": "systems.render",
     "Stage": "scripting.stage",
+    "AdoptedContext": "engine.gl.adopted",
+    "adopt_context": "engine.gl.adopted",
     "open_window": "engine.gl.context",
 }
 _SCRIPTING = {
@@ -241,6 +274,8 @@ _SCRIPTING = {
     "lifecycle": "ProcessMode",
     "node": "Node is_instance_valid",
     "node3d": "Node3D",
+    "nodes": "Agent AnimationPlayer AnimationTree Ball Camera Player Section Stadium"
+    " StateMachinePlayback",
     "packed_scene": "PackedScene load_scene",
     "paths": "NodePathError",
     "reports": "FreedError ScriptError",
@@ -253,6 +288,8 @@ _SCRIPTING = {
     "tween": "Tween TweenPause",
     "vectors": "Quaternion Vector3",
     "window_input": "WindowInput",
+    "window_run": "run",
+    "hot_reload": "HotReload",
 }
 _LATE = _DRAWING | {
     name: f"scripting.{module}" for module, names in _SCRIPTING.items() for name in names.split()
@@ -261,6 +298,12 @@ _LATE = _DRAWING | {
 
 def __getattr__(name: str) -> Any:
     """Load what draws, and what scripts use, only when it is asked for."""
+    if name == "nodes":
+        from .scripting import nodes
+
+        return nodes
+    if name == "OneShotRequest":
+        return controllers.OneShotRequest
     if name not in _LATE:
         raise AttributeError(f"module 'tifo' has no attribute '{name}'")
     from importlib import import_module

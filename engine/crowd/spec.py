@@ -36,7 +36,7 @@ _WHOLE = {
     "columns": (1, MOST_ROWS),
     "sides": (1, MOST_SIDES),
     "streams": (1, 256),
-    "spare_streams": (0, 255),
+    "spare_streams": (0, 256),
     "history": (2, 254),
     "slots": (0, 8192),
     "uniques": (0, 2048),
@@ -95,7 +95,7 @@ class CrowdSpec:
     streams, history
         Animation streams and poses kept of each.
     spare_streams
-        How many of the streams the crowd leaves free, for motions that you add to its pool.
+        Further stream rows that are left free for motions of your own.
     slots, uniques
         Agents that can blend from the middle of another blend at once, and motions that are not
         shared, such as live ones.
@@ -145,7 +145,7 @@ class CrowdSpec:
     behaviour: str = field(default="sport", metadata=_help("behaviour table: a name or a file"))
     embarrassment: float = field(default=0.25, metadata=_help("of the whole crowd, 0 to 1"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
-    spare_streams: int = field(default=0, metadata=_help("streams left free for your own motions"))
+    spare_streams: int = field(default=0, metadata=_help("further streams for your own motions"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
     uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))
@@ -172,11 +172,6 @@ class CrowdSpec:
             raise ValueError(
                 f"rows * columns must be at most {MOST_SEATS:,}, "
                 f"not {self.rows} * {self.columns} = {self.rows * self.columns:,}"
-            )
-        if self.spare_streams >= self.streams:
-            raise ValueError(
-                f"spare_streams must be less than streams, not {self.spare_streams} of "
-                f"{self.streams}"
             )
         if self.children + self.old > 1.0 + 1e-9:
             raise ValueError(f"children + old must be at most 1, not {self.children} + {self.old}")

@@ -51,7 +51,7 @@ def start_twins(
     whole
         (K,) bool motions all of whose streams are needed.
     spare
-        Free rows that are left alone.
+        Rows that stay free.
     """
     types = len(pool.twins.types)
     shared = np.where(whole, streams.count, np.minimum(streams.count, 1))

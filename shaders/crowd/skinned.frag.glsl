@@ -2,6 +2,7 @@
 // A skinned agent's surface.
 #include "lib/frame.glsl"
 #include "lib/light.glsl"
+#include "lib/output.glsl"
 
 in vec3 f_place;
 in vec3 f_normal;
@@ -62,5 +63,5 @@ void main()
     // A little light from behind the rim keeps bodies apart in a full stand.
     float rim = pow(1.0 - max(dot(normal, normalize(eye - f_place)), 0.0), 3.0);
     light += 0.10 * rim * SKY_COLOUR;
-    colour = vec4(haze(tone(light), f_place), 1.0);
+    colour = written(haze(tone(light), f_place), 1.0);
 }

@@ -41,7 +41,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "tint": st.floats(0.0, 1.0),
     "casting": st.booleans(),
     "streams": st.integers(1, 256),
-    "spare_streams": st.just(0),
+    "spare_streams": st.integers(0, 256),
     "history": st.integers(2, 254),
     "slots": st.integers(0, 8192),
     "uniques": st.integers(0, 2048),
