@@ -14,6 +14,7 @@ from .dilation import Dilation, DilationRequest
 from .emotion import Emotion
 from .motion import MotionState
 from .overlays import Overlays
+from .party import Party, PartyKind
 from .placement import Placement
 from .seat import Seat, Section
 from .team import Team
@@ -35,6 +36,8 @@ __all__ = [
     "MotionState",
     "Overlays",
     "PartBits",
+    "Party",
+    "PartyKind",
     "Placement",
     "Seat",
     "Section",

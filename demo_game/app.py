@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, Protocol
 
 import tifo
 
+from .captions import Caption
 from .recording import check_writable
 
+SceneName = Literal["stadium", "lab"]
 HAND_OVER = "no display here, so the demo is rendered offscreen"
 
 
@@ -20,7 +24,7 @@ class Show:
     Parameters
     ----------
     spec
-        Stadium and crowd.
+        Stadium and crowd; of the lab only the seed.
     scale
         Metres a unit of BVH files; guessed if None.
     size
@@ -33,6 +37,8 @@ class Show:
         Files for the last picture and for a clip, or None.
     fullscreen, vsync
         Of the window.
+    scene
+        What is shown: a match in the stadium, or the lab.
     """
 
     spec: tifo.CrowdSpec
@@ -44,6 +50,33 @@ class Show:
     record: str | None
     fullscreen: bool = False
     vsync: bool = True
+    scene: SceneName = "stadium"
+
+
+class Scene(Protocol):
+    """What the demo can show."""
+
+    keys: str
+    """Lines that say which keys are the scene's own."""
+
+    @property
+    def simulation(self) -> tifo.Simulation:
+        """Its stand and crowd."""
+
+    def camera(self, name: str, size: tuple[int, int]) -> tifo.FreeCamera:
+        """The camera ``tv``, ``close`` or ``bowl``, for a picture of `size` pixels."""
+
+    def advance(self, seconds: float) -> None:
+        """Let happen what is no part of the simulation itself."""
+
+    def captions(self) -> Sequence[Caption]:
+        """Words in the picture."""
+
+    def goal(self, side: int) -> str:
+        """Let a side score; what is said of it."""
+
+    def shoot(self, seat: int) -> str:
+        """Send the ball to a seat; what is said of it."""
 
 
 def play(show: Show, *, headless: bool) -> int:
@@ -66,18 +99,25 @@ def play(show: Show, *, headless: bool) -> int:
     return run_window(show, console)
 
 
-def make_simulation(show: Show) -> tuple[tifo.Simulation, tifo.FreeCamera]:
-    """The stadium of a show, and a camera where the show begins.
+def make_scene(show: Show) -> Scene:
+    """What a show shows.
 
     Raises
     ------
     AssetError
         If a file can't be used.
+    ValueError
+        If the lab is asked for with a character or motions of the user's.
     """
-    character = tifo.character_of(show.spec, show.scale)
-    simulation = tifo.Simulation(show.spec, character)
-    presets = tifo.camera_presets(simulation.plan)
-    return simulation, tifo.FreeCamera.looking(*presets[show.camera])
+    if show.scene == "lab":
+        from .lab import Lab
+
+        if show.spec.character or show.spec.motions:
+            raise ValueError("the lab shows the built-in spectator and its motions only")
+        return Lab(show.spec.seed)
+    from .match import Match
+
+    return Match(show.spec, show.scale)
 
 
 def has_display() -> bool:

@@ -10,16 +10,16 @@ from rich.console import Console
 
 import tifo
 
-from .app import Show, make_simulation
-from .attention import Attention
+from .app import Show, make_scene
+from .captions import draw_captions, place_captions
 from .overlay import Overlay
 from .recording import Clip, write_png
+from .signs import Signs
 
 RECORDED_RATE = 30
 FLY_SPEED = 12.0
 """Metres a second; five times that with Shift held."""
 HINT = (
-    "G / H  goal for home / away        click or B  ball into the crowd\n"
     "1 2 3  cameras        C  orbit or fly        WASD QE  move        drag, scroll  look\n"
     "F  fullscreen        V  vsync        P  pause        F12  screenshot        Esc  quit"
 )
@@ -40,8 +40,9 @@ class Game:
         self.console = console
         self.show = show
         with console.status("building the stadium"):
-            self.simulation, self.camera = make_simulation(show)
-        self.attention = Attention(self.simulation)
+            self.scene = make_scene(show)
+        self.simulation = self.scene.simulation
+        self.camera = self.scene.camera(show.camera, show.size)
         self.window: Any = tifo.open_window(
             show.size, "tifo", vsync=show.vsync, fullscreen=show.fullscreen
         )
@@ -52,7 +53,9 @@ class Game:
         self._mouse: Any = pyglet.window.mouse
         self.keys: Any = pyglet.window.key.KeyStateHandler()
         self.stage = tifo.Stage(self.simulation, self.window.get_framebuffer_size())
-        self.overlay = Overlay(self.window, HINT)
+        greet = not self.scene.captions()
+        self.overlay = Overlay(self.window, self.scene.keys + HINT, greet=greet)
+        self.signs = Signs(self.window)
         self.overlay.listen(self.simulation.crowd)
         self.paused = False
         self._pointer = (show.size[0] // 2, show.size[1] // 2)
@@ -81,11 +84,13 @@ class Game:
         delta = real if self._clip is None else 1 / RECORDED_RATE
         self._steer(real)
         passed = 0.0 if self.paused else delta
-        self.attention.advance(passed)
+        self.scene.advance(passed)
         self.stage.draw(self.camera, passed)
         if self._clip is not None:
-            self._clip.add(self.stage.pixels())
+            self._clip.add(self._pixels())
         self.stage.present(self.window.get_framebuffer_size())
+        size = self.window.get_size()
+        self.signs.draw(place_captions(self.scene.captions(), self.camera, size))
         self.overlay.draw(real, self.simulation, self.stage.counts, paused=self.paused)
 
     def on_resize(self, width: int, height: int) -> None:
@@ -98,16 +103,13 @@ class Game:
         key = self._key
         presets = {key._1: "tv", key._2: "close", key._3: "bowl"}
         if symbol == key.G:
-            self._score(0)
-            self.overlay.say("GOAL for the home side!")
+            self.overlay.say(self.scene.goal(0))
         elif symbol == key.H:
-            self._score(1)
-            self.overlay.say("GOAL for the away side!")
+            self.overlay.say(self.scene.goal(1))
         elif symbol == key.B:
             self._shoot(*self._pointer)
         elif symbol in presets:
-            eye, target = tifo.camera_presets(self.simulation.plan)[presets[symbol]]
-            self.camera = tifo.FreeCamera.looking(eye, target)
+            self.camera = self.scene.camera(presets[symbol], self.stage.size)
         elif symbol == key.C:
             fly = self.camera.mode is tifo.CameraMode.ORBIT
             self.camera.mode = tifo.CameraMode.FLY if fly else tifo.CameraMode.ORBIT
@@ -123,7 +125,7 @@ class Game:
             self.overlay.help_shown = not self.overlay.help_shown
         elif symbol == key.F12:
             name = f"tifo-{datetime.now():%Y%m%d-%H%M%S}.png"
-            write_png(name, self.stage.pixels())
+            write_png(name, self._pixels())
             self.overlay.say(f"wrote {name}")
 
     def on_mouse_motion(self, x: int, y: int, dx: int, dy: int) -> None:
@@ -160,7 +162,7 @@ class Game:
             self.console.print(f"wrote [bold]{self.show.record}[/]")
         self.window.switch_to()
         if self.show.screenshot:
-            write_png(self.show.screenshot, self.stage.pixels())
+            write_png(self.show.screenshot, self._pixels())
             self.console.print(f"wrote [bold]{self.show.screenshot}[/]")
         self.stage.close()
 
@@ -176,9 +178,10 @@ class Game:
             self.camera.fly(*moves)
             self.camera.keep_above(0.4)
 
-    def _score(self, side: int) -> None:
-        self.simulation.send(tifo.Goal(side=side))
-        self.attention.goal(side)
+    def _pixels(self) -> Any:
+        """The last picture with the words in it."""
+        placed = place_captions(self.scene.captions(), self.camera, self.stage.size)
+        return draw_captions(self.stage.pixels(), placed) if placed else self.stage.pixels()
 
     def _shoot(self, x: int, y: int) -> None:
         origin, direction = self.camera.ray(x, y, self.window.get_size())
@@ -187,10 +190,7 @@ class Game:
         if seat is None:
             self.overlay.say("the ball misses the stands")
             return
-        px, py, pz = (float(value) for value in plan.position[:, seat])
-        self.simulation.send(tifo.BallHit(place=(px, py + 1.0, pz)))
-        self.attention.stare((px, py + 1.0, pz))
-        self.overlay.say(f"the ball hits seat {plan.label(seat)}")
+        self.overlay.say(self.scene.shoot(seat))
 
 
 def run_window(show: Show, console: Console) -> int:

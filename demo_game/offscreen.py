@@ -19,8 +19,8 @@ from rich.progress import (
 
 import tifo
 
-from .app import Show, make_simulation
-from .attention import Attention
+from .app import Scene, Show, make_scene
+from .captions import draw_captions, place_captions
 from .recording import Clip, write_png
 
 PICTURES_A_SECOND = 30
@@ -37,14 +37,15 @@ def render(show: Show, console: Console) -> int:
     can be written.
     """
     with console.status("building the stadium"):
-        simulation, camera = make_simulation(show)
-        stage = tifo.Stage.offscreen(simulation, show.size)
-    for note in simulation.crowd.character.notes:
+        scene = make_scene(show)
+        stage = tifo.Stage.offscreen(scene.simulation, show.size)
+    for note in scene.simulation.crowd.character.notes:
         console.print(f"[dim]note:[/] {note}")
     picture, clip = _targets(show, console)
     rate = SOFTWARE_PICTURES_A_SECOND if stage.is_software else PICTURES_A_SECOND
     seconds = DEFAULT_SECONDS if show.seconds is None else show.seconds
-    pixels = _film(simulation, stage, camera, seconds, rate, clip, console)
+    camera = scene.camera(show.camera, show.size)
+    pixels = _film(scene, stage, camera, seconds, rate, clip, console)
     if picture is not None:
         write_png(picture, pixels)
     stage.close()
@@ -67,7 +68,7 @@ def _targets(show: Show, console: Console) -> tuple[Path | None, Path | None]:
 
 
 def _film(
-    simulation: tifo.Simulation,
+    scene: Scene,
     stage: tifo.Stage,
     camera: tifo.FreeCamera,
     seconds: float,
@@ -84,21 +85,24 @@ def _film(
         MofNCompleteColumn(),
         TimeRemainingColumn(),
     )
-    attention = Attention(simulation)
+    simulation = scene.simulation
     with ExitStack() as stack:
         progress = stack.enter_context(Progress(*columns, console=console))
         recorder = stack.enter_context(Clip(clip, stage.size, rate)) if clip else None
         task = progress.add_task(f"{len(simulation.crowd):,} spectators", total=pictures)
         for number, due in enumerate(ticks):
             if number == int(GOAL_AT * pictures):
-                simulation.send(tifo.Goal(side=0))
-                attention.goal(0)
+                scene.goal(0)
             simulation.run(seconds=due / 60)
-            attention.advance(due / 60)
+            scene.advance(due / 60)
             if recorder is not None:
-                stage.draw(camera)
-                recorder.add(stage.pixels())
+                recorder.add(_picture(scene, stage, camera))
             progress.advance(task)
-        if recorder is None:
-            stage.draw(camera)
-    return stage.pixels()
+        return _picture(scene, stage, camera)
+
+
+def _picture(scene: Scene, stage: tifo.Stage, camera: tifo.FreeCamera) -> NDArray[np.uint8]:
+    """What the camera sees now, with the words in it."""
+    stage.draw(camera)
+    pixels, words = stage.pixels(), scene.captions()
+    return draw_captions(pixels, place_captions(words, camera, stage.size)) if words else pixels

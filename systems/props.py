@@ -55,6 +55,8 @@ def give_props(crowd: Crowd, share: float, *, tick: int) -> dict[str, Part]:
     kind = rng.random(len(crowd))
     colours = draw_appearance(side, rng, fervour=1.0)
     bare = wears(crowd.character, crowd.body, "hair", _NO_CAP)
+    # A shirt's pattern is not that of a flag.
+    colours.pattern[:] = 0
     parts = {}
     for name, (first, last) in _KINDS.items():
         prop = builtin_prop(name)

@@ -40,6 +40,7 @@ from ..engine.crowd.looks import draw_choices
 from ..engine.crowd.motions import Role, sort_motions, start_streams
 from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
+from ..engine.crowd.regions import find_regions
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.crowd.twin_streams import affordable_streams, start_twins
@@ -56,6 +57,7 @@ from ..engine.streams.slots import SlotPool
 from ..engine.streams.stream_needs import StreamNeeds
 from ..engine.streams.uniques import UniquePool
 from .behaviour import columns_of
+from .casting import cast_crowd
 from .crowd import Crowd
 
 STREAMS_FOR_BODIES = 128
@@ -84,17 +86,18 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(7)
-    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds = map(
-        np.random.default_rng, seeds
+    seeds = np.random.SeedSequence(spec.seed).spawn(8)
+    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds, rng_casting = (
+        map(np.random.default_rng, seeds)
     )
     clips = character.clips or (rest_clip(character.skeleton),)
     # Every motion should have streams of its own, and twins of them where there are body types.
-    bodies = spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES
-    library = sort_motions(clips, most=max(spec.streams // (6 if bodies else 2), 1))
+    rows = spec.streams
+    bodies = spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES
+    library = sort_motions(clips, most=max(rows // (7 if bodies else 2), 1))
     plans = None
     if spec.poses == "streams":
-        plans = find_ways(clips, library, spec.streams, spec.history)
+        plans = find_ways(clips, library, rows, spec.history)
     if plans is not None:
         library = add_ways(library, plans, len(clips))
     figure = make_figure(character)
@@ -120,7 +123,7 @@ def spawn_crowd(
         placement=_place(plan, figure, size, rng_place),
         body=body,
         team=team,
-        appearance=draw_appearance(side, rng_looks),
+        appearance=draw_appearance(side, rng_looks, kind=body.kind),
         motion=MotionState.allocate(shown),
         emotion=emotion,
         behaviour=behaviour,
@@ -130,6 +133,7 @@ def spawn_crowd(
         library=library,
         events=EventQueue(),
         overrides=OverrideSet(character.skeleton, count),
+        world=str(esper.current_world),
     )
     crowd.entity = esper.create_entity(
         crowd.seat,
@@ -147,6 +151,7 @@ def spawn_crowd(
         table,
         guidance,
         figure,
+        find_regions(character, figure, tint=spec.tint),
         character,
     )
     if plans is not None:
@@ -156,6 +161,10 @@ def spawn_crowd(
         _add_baked(crowd, bank, figure, rng_motion)
     else:
         _add_streams(crowd, bank, figure, plans, offsets or spec.offsets, rng_motion)
+    if spec.casting:
+        # Offsets that the user gave stay with whom they were given to.
+        own = callable(offsets or spec.offsets)
+        cast_crowd(crowd, rng_casting, motions=not own)
     types = crowd.pool.twins.types if crowd.pool is not None and len(crowd.pool.twins) else ()
     adult = SPECTATOR_HEIGHT / figure.height
     crowd.physique = measure(character.skeleton, figure, types, bank, library, adult)
@@ -171,7 +180,7 @@ def _place(
     count = plan.count
     turn = rng.normal(0.0, 0.12, count).clip(-0.35, 0.35)
     return Placement(
-        position=plan.position,
+        position=plan.position.copy(),
         yaw=(plan.yaw + turn).astype(np.float32),
         scale=(size * SPECTATOR_HEIGHT / figure.height).astype(np.float32),
     )
@@ -189,7 +198,7 @@ def _add_streams(
     pool = StreamPool(
         crowd.character.skeleton,
         bank,
-        capacity=spec.streams,
+        capacity=spec.streams + spec.spare_streams,
         history=spec.history,
         markers=figure.joints,
         uniques=spec.uniques,
@@ -198,15 +207,17 @@ def _add_streams(
     )
     ways_need = 0 if plans is None else sum(plan.streams(spec.history) for plan in plans)
     motions = len(crowd.library.names)
+    rows = spec.streams
     own = 0
-    if spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES and pool.twins.types:
-        own = affordable_streams(spec.streams, motions, ways_need, len(pool.twins.types))
+    if spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES and pool.twins.types:
+        own = affordable_streams(rows, motions, ways_need, len(pool.twins.types))
     parts: list[Any] = [pool]
-    kept = np.zeros(spec.streams, np.bool_)
+    kept = np.zeros(spec.streams + spec.spare_streams, np.bool_)
+    kept[spec.streams :] = True
     if plans is None:
-        streams = start_streams(pool, crowd.library, own or spec.streams, rng)
+        streams = start_streams(pool, crowd.library, own or rows, rng)
     else:
-        many = own or spec.streams - ways_need
+        many = own or rows - ways_need
         streams = start_streams(pool, without_ways(crowd.library), many, rng)
         ways, streams = start_ways(pool, crowd.library, plans, streams, spec.history)
         kept[np.concatenate(ways.rows)] = True
@@ -214,11 +225,11 @@ def _add_streams(
     if own:
         whole = np.zeros(motions, np.bool_)
         whole[motions if plans is None else motions - len(plans) :] = True
-        streams = start_twins(pool, streams, whole)
+        streams = start_twins(pool, streams, whole, spec.spare_streams)
         twins = pool.twins.table[1:, kept]
         kept[twins[twins >= 0]] = True
     if spec.rest_idle:
-        parts.append(StreamNeeds(spec.streams, always=kept))
+        parts.append(StreamNeeds(len(kept), always=kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
     # before the first one.
     for tick in range(1 - spec.history, 1):

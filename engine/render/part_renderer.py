@@ -8,6 +8,8 @@ they cost nothing.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...components import Attachment, Detail, Level
 from ..assets.character import Character
 from ..assets.variants import one_look
@@ -122,8 +124,9 @@ class PartRenderer:
         character, inputs = self._character, self._inputs
         materials = character.materials
         if self._attachment.follows_body:
+            own = None if inputs.regions is None else replace(inputs.regions, parted=False)
             plain = level_draws(character, [InstanceList() for _ in levels])
-            return SkinnedPass(plain, materials, inputs), None
+            return SkinnedPass(plain, materials, inputs, regions=own), None
         lists = tuple(HookedList() for _ in levels)
         hooks = HookPass(self._attachment, self._parent, lists)
         draws = level_draws(character, lists)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assets.character import Character, Material, SkinnedMesh
+from ..crowd.regions import Regions
 from ..gl.buffer import Buffer
 from ..gl.program import Program
 from ..gl.texture import Texture2D
@@ -85,6 +86,8 @@ class SkinnedPass:
         The crowd's, which make the programs.
     switches
         Defined in the programs as well.
+    regions
+        Where the parts and the patterns of shirts are; None for neither.
     """
 
     def __init__(
@@ -93,14 +96,18 @@ class SkinnedPass:
         materials: Sequence[Material],
         inputs: CrowdInputs,
         switches: frozenset[str] = frozenset(),
+        regions: Regions | None = None,
     ) -> None:
         self._inputs = inputs
         self._programs: dict[frozenset[str], Program] = {}
+        self._regions = regions
+        if regions is not None:
+            switches |= {"PARTED" if regions.parted else "PATTERNED"}
         self.lists = tuple(agents for _, agents in draws)
         self._draws = tuple(
             tuple(
                 self._upload(part, agents, switches | own)
-                for batch in make_batches(meshes, materials, inputs.morphs)
+                for batch in make_batches(meshes, materials, inputs.morphs, regions)
                 for part, own in _parts(batch, inputs.overridden)
             )
             for meshes, agents in draws
@@ -112,6 +119,8 @@ class SkinnedPass:
         for program in self._programs.values():
             frame.apply(program)
             inputs.bind(program, frame.tick, frame.alpha, markers=False)
+            if self._regions is not None:
+                _bind_regions(program, self._regions)
             for batches, agents in zip(self._draws, self.lists, strict=True):
                 for batch in batches if agents.count else ():
                     if batch.program is program:
@@ -157,6 +166,16 @@ class SkinnedPass:
             agents.delete()
         for program in self._programs.values():
             program.delete()
+
+
+def _bind_regions(program: Program, regions: Regions) -> None:
+    """What turns a place in the bind pose into heights of the trunk."""
+    scale = 1.0 / regions.trunk
+    across = regions.across * scale
+    program["trunk_across"] = (float(across[0]), float(across[1]), -regions.middle * scale)
+    program["trunk_up"] = (scale, -regions.waist * scale)
+    if regions.parted:
+        program["tint"] = regions.tint
 
 
 def _parts(

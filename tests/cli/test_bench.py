@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -87,6 +88,23 @@ def test_scripting(capsys: pytest.CaptureFixture[str]) -> None:
     assert "emissions a second" in capsys.readouterr().out
 
 
+@pytest.mark.slow
+def test_behaviour_prints_published_figures_and_draws(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    plot = tmp_path / "curves.png"
+    words = ("behaviour", "--agents", "12000", "--runs", "5", "--plot", str(plot))
+    result = figures(capsys, *words)
+    situations = result["situations"]
+    assert isinstance(situations, dict)
+    assert set(situations) == {"quiet", "all_clap", "wave"}
+    shown = result["figures"]
+    assert isinstance(shown, list)
+    assert len(shown) > 15
+    assert all(set(figure) == {"name", "measured", "published"} for figure in shown)
+    assert plot.stat().st_size > 20_000
+
+
 @pytest.mark.gl
 def test_frame(capsys: pytest.CaptureFixture[str]) -> None:
     result = figures(capsys, "frame", "--agents", "200", "--size", "80x60", "--runs", "2")
@@ -117,3 +135,16 @@ def test_impossible_sizes_are_refused(
 ) -> None:
     assert main(["bench", *words]) == 1
     assert capsys.readouterr().err.startswith("tifo: ")
+
+
+def test_variety(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("variety", "--agents", "900", "--streams", "64", "--history", "30")
+    assert main(["bench", *words, "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    drawn, cast = result["moments"]["as drawn"], result["moments"]["cast"]
+    assert cast["pairs"] == drawn["pairs"] > 5000
+    assert cast["score"] < drawn["score"]
+    assert cast["same_both"] == 0.0
+    assert "3 s after a goal" in result["moments"]
+    assert main(["bench", *words]) == 0
+    assert "within 3 seats" in capsys.readouterr().out

@@ -5,7 +5,10 @@ evaluate: all streams for one pose tick (sampling, kinematics, palettes, store);
 tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
 memory: what poses and clips take, streamed and baked, and what a tick copies.
+variety: how alike neighbours look and move, before and after casting.
 scripting: a frame of many nodes with `_process`, and emissions of a signal.
+behaviour: applause, rhythm, waves, emotions and parties: what comes out of the models beside what
+  is published of people, and what a tick of them costs; with --plot, curves as a picture.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame", "memory", "scripting")
+BENCHMARKS = ("evaluate", "tick", "frame", "memory", "variety", "behaviour", "scripting")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--listeners", type=int, default=10, metavar="N", help="of a signal (scripting)"
     )
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
+    parser.add_argument("--plot", metavar="FILE.png", help="draw curves (behaviour)")
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
@@ -103,6 +107,17 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
             return scripting(
                 nodes=options.nodes, listeners=options.listeners, runs=options.runs or 300
             )
+    elif options.benchmark == "behaviour":
+        from ..benchmarks.behaviour import behaviour
+
+        def measure() -> dict[str, Any]:
+            return behaviour(agents=options.agents, runs=options.runs or 200, plot=options.plot)
+
+    elif options.benchmark == "variety":
+        from ..benchmarks.variety import variety
+
+        def measure() -> dict[str, Any]:
+            return variety(agents=options.agents, **common)
 
     else:
         from ..benchmarks.frame import frame
@@ -126,6 +141,9 @@ def _report(console: Any, result: dict[str, Any]) -> None:
     if result["benchmark"] == "memory":
         _report_memory(console, result)
         return
+    if result["benchmark"] == "variety":
+        _report_variety(console, result)
+        return
     table = Table("", "median ms", "10 %", "90 %", "lowest", "runs")
     for column in table.columns[1:]:
         column.justify = "right"
@@ -134,13 +152,16 @@ def _report(console: Any, result: dict[str, Any]) -> None:
         keys = ("median_ms", "p10_ms", "p90_ms", "min_ms")
         table.add_row(name, *(f"{figures[key]:.3f}" for key in keys), str(figures["runs"]))
 
-    row("whole", result)
-    for group in ("systems", "cameras"):
+    if result["benchmark"] != "behaviour":
+        row("whole", result)
+    for group in ("systems", "cameras", "situations"):
         for name, figures in result.get(group, {}).items():
-            row(f"  {name}", figures)
+            row(f"  {name.replace('_', ' ')}", figures)
     if "frame_after_adding" in result:
         row("after a node was added", result["frame_after_adding"])
     console.print(table)
+    if "figures" in result:
+        _report_figures(console, result["figures"])
     if "emit_us" in result:
         console.print(
             f"{result['emits_per_second']:,} emissions a second, {result['emit_us']:.2f} us each; "
@@ -185,6 +206,32 @@ def _report_memory(console: Any, result: dict[str, Any]) -> None:
         f"of {result['ring_poses']} poses, or {result['clips_baked']:,} baked ones of "
         f"{result['clip_baked_frames']:.0f} frames"
     )
+    _report_environment(console, result)
+
+
+def _report_figures(console: Any, figures: list[dict[str, str]]) -> None:
+    from rich.table import Table
+
+    table = Table("", "measured here", "published")
+    for figure in figures:
+        table.add_row(figure["name"], figure["measured"], figure["published"])
+    console.print(table)
+
+
+def _report_variety(console: Any, result: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    columns = ("clone score", "worst", "found", "same look", "same motion", "both")
+    table = Table("", *columns)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, figures in result["moments"].items():
+        shares = (f"{figures[key]:.4%}" for key in ("same_look", "same_motion", "same_both"))
+        score, worst = f"{figures['score']:.5f}", f"{figures['worst']:.3f}"
+        table.add_row(name, score, worst, f"{figures['found']:.0f}", *shares)
+    console.print(table)
+    pairs = next(iter(result["moments"].values()))["pairs"]
+    console.print(f"{pairs:,.0f} pairs of neighbours within 3 seats; shares are of these")
     _report_environment(console, result)
 
 

@@ -123,3 +123,9 @@ def make_crowd(factories: ModuleType) -> MakeCrowd:
 def crowd(make_crowd: MakeCrowd) -> Crowd:
     """At a match, found in the middle of things."""
     return make_crowd()
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Where a test's chances come from."""
+    return np.random.default_rng(12)
