@@ -86,7 +86,9 @@ class CrowdRenderer:
             levels = range(len(Level) - 1)
             self._lists = [VariantLists(self._character, level) for level in levels]
             draws = [draw for lists in self._lists for draw in lists.draws]
-            made = SkinnedPass(draws, self._character.materials, self.inputs, regions=self.inputs.regions)
+            made = SkinnedPass(
+                draws, self._character.materials, self.inputs, regions=self.inputs.regions
+            )
             if self._skinned is not None:
                 self._skinned.delete()
             self._skinned, self._revision = made, self.inputs.revision

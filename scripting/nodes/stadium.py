@@ -68,6 +68,7 @@ class Stadium(Node3D):
     ultras: float = export(default=0.05, range=(0, 1), group="Crowd", changed="_spec_changed")
     child_share: float = export(default=0.06, range=(0, 1), group="Crowd", changed="_spec_changed")
     old_share: float = export(default=0.1, range=(0, 1), group="Crowd", changed="_spec_changed")
+    women: float = export(default=0.4, range=(0, 1), group="Crowd", changed="_spec_changed")
     behaviour: str = export(default="sport", group="Crowd", changed="_spec_changed")
     embarrassment: float = export(
         default=0.25, range=(0, 1), group="Crowd", changed="_spec_changed"
