@@ -270,6 +270,7 @@ class RefNode:
             self.tree.values[self._at(way.trigger)] = 0.0
         clip, _ = self.children[before].leading()
         phase = clip.time / clip.clip.duration
+        phase = phase % 1.0 if clip.loops else min(max(phase, 0.0), 1.0)
         anew = self._enter(target)
         if way.sync and anew:
             for node in self.children[target].below():

@@ -174,10 +174,14 @@ def _synchronise(tables: Tables, nodes: Ints, phase: NDArray[np.float64]) -> Non
 
 
 def clip_phases(tables: Tables, clips: Ints) -> NDArray[np.float64]:
-    """Times of clip nodes as shares of their durations, 0 to 1; 0 for a clip of no duration."""
+    """Times of clip nodes as shares of their durations, 0 to 1; 0 for a clip of no duration.
+
+    A node that was just put somewhere may stand beyond an end: loops are wrapped, others held.
+    """
     duration = tables.bank.duration[tables.nodes["clip"][clips]]
     share = tables.nodes["time"][clips] / np.where(duration > 0, duration, 1.0)
-    return np.where(duration > 0, np.clip(share, 0.0, 1.0), 0.0)
+    inside = np.where(tables.nodes["looping"][clips], share % 1.0, np.clip(share, 0.0, 1.0))
+    return np.where(duration > 0, inside, 0.0)
 
 
 def _weigh(tables: Tables, nodes: Ints) -> None:
