@@ -6,6 +6,7 @@ texture unit that no pass uses, so they never change what a pass has bound.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Any, Literal
 
 import numpy as np
@@ -106,8 +107,9 @@ class Texture(GLObject):
         gl.glGenerateMipmap(target)
         self._detach()
 
+    @abstractmethod
     def _allocate(self, level: int) -> None:
-        raise NotImplementedError
+        """Make the memory of a level."""
 
     def _attach(self) -> int:
         gl.glActiveTexture(gl.GL_TEXTURE0 + SPARE_UNIT)
