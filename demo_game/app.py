@@ -31,6 +31,8 @@ class Show:
         When to stop; None for a window that stays, and 6 s offscreen.
     screenshot, record
         Files for the last picture and for a clip, or None.
+    events
+        File with what happens, or None.
     fullscreen, vsync
         Of the window.
     """
@@ -42,6 +44,7 @@ class Show:
     seconds: float | None
     screenshot: str | None
     record: str | None
+    events: str | None = None
     fullscreen: bool = False
     vsync: bool = True
 
@@ -78,6 +81,22 @@ def make_simulation(show: Show) -> tuple[tifo.Simulation, tifo.FreeCamera]:
     simulation = tifo.Simulation(show.spec, character)
     presets = tifo.camera_presets(simulation.plan)
     return simulation, tifo.FreeCamera.looking(*presets[show.camera])
+
+
+def plan_events(show: Show, simulation: tifo.Simulation) -> list[tifo.Event]:
+    """Send what the show's file says to the crowd, each event for its time, and return it.
+
+    Raises
+    ------
+    AssetError
+        If the file can't be used.
+    """
+    if show.events is None:
+        return []
+    events = tifo.load_events(show.events, simulation.plan)
+    for event in events:
+        simulation.send(event)
+    return events
 
 
 def has_display() -> bool:

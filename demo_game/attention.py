@@ -57,6 +57,13 @@ class Attention:
         """The ball goes somewhere, and stays there for a while."""
         self._pass_to(np.array(place), rest=STARE_SECONDS)
 
+    def follow(self, event: tifo.Event) -> None:
+        """The ball goes where an event happens, if it is one of the ball's."""
+        if event.kind == "goal":
+            self.goal(event.side or 0)
+        elif event.place is not None and event.kind == "ball_in_crowd":
+            self.stare(event.place)
+
     def goal(self, side: int) -> None:
         """The ball goes into the net: of the goal at +X, if the home side scores."""
         end = GOAL_LINE if side == 0 else -GOAL_LINE

@@ -10,19 +10,15 @@ from rich.console import Console
 
 import tifo
 
-from .app import Show, make_simulation
+from .app import Show, make_simulation, plan_events
 from .attention import Attention
+from .keys import EVENT_KEYS, HINT, MESSAGES, SIDELESS
 from .overlay import Overlay
 from .recording import Clip, write_png
 
 RECORDED_RATE = 30
 FLY_SPEED = 12.0
 """Metres a second; five times that with Shift held."""
-HINT = (
-    "G / H  goal for home / away        click or B  ball into the crowd\n"
-    "1 2 3  cameras        C  orbit or fly        WASD QE  move        drag, scroll  look\n"
-    "F  fullscreen        V  vsync        P  pause        F12  screenshot        Esc  quit"
-)
 
 
 class Game:
@@ -41,6 +37,7 @@ class Game:
         self.show = show
         with console.status("building the stadium"):
             self.simulation, self.camera = make_simulation(show)
+        self._coming = plan_events(show, self.simulation)
         self.attention = Attention(self.simulation)
         self.window: Any = tifo.open_window(
             show.size, "tifo", vsync=show.vsync, fullscreen=show.fullscreen
@@ -81,6 +78,8 @@ class Game:
         delta = real if self._clip is None else 1 / RECORDED_RATE
         self._steer(real)
         passed = 0.0 if self.paused else delta
+        while self._coming and (self._coming[0].time or 0.0) <= self.simulation.clock.tick / 60:
+            self.attention.follow(self._coming.pop(0))
         self.attention.advance(passed)
         self.stage.draw(self.camera, passed)
         if self._clip is not None:
@@ -97,14 +96,10 @@ class Game:
         """What single keys do."""
         key = self._key
         presets = {key._1: "tv", key._2: "close", key._3: "bowl"}
-        if symbol == key.G:
-            self._score(0)
-            self.overlay.say("GOAL for the home side!")
-        elif symbol == key.H:
-            self._score(1)
-            self.overlay.say("GOAL for the away side!")
-        elif symbol == key.B:
-            self._shoot(*self._pointer)
+        kind = EVENT_KEYS.get(chr(symbol).upper()) if symbol < 128 else None
+        if kind is not None or symbol == key.H:
+            is_away = symbol == key.H or bool(modifiers & key.MOD_SHIFT)
+            self._happen(kind or "goal", int(is_away))
         elif symbol in presets:
             eye, target = tifo.camera_presets(self.simulation.plan)[presets[symbol]]
             self.camera = tifo.FreeCamera.looking(eye, target)
@@ -176,21 +171,30 @@ class Game:
             self.camera.fly(*moves)
             self.camera.keep_above(0.4)
 
-    def _score(self, side: int) -> None:
-        self.simulation.send(tifo.Goal(side=side))
-        self.attention.goal(side)
+    def _happen(self, kind: str, side: int) -> None:
+        """Let something happen, where the mouse points if it needs a place."""
+        place, seat = None, None
+        if kind in tifo.PLACED:
+            seat = self._seat(*self._pointer)
+            if seat is None:
+                self.overlay.say("the mouse points at no seat")
+                return
+            x, y, z = (float(value) for value in self.simulation.plan.position[:, seat])
+            place = (x, y + 1.0, z)
+        owner = None if kind in SIDELESS or place is not None else side
+        event = tifo.Event(kind, owner, place=place)
+        self.simulation.send(event)
+        self.attention.follow(event)
+        label = "" if seat is None else self.simulation.plan.label(seat)
+        self.overlay.say(MESSAGES[kind].format(side=("home", "away")[side], seat=label))
+
+    def _seat(self, x: int, y: int) -> int | None:
+        origin, direction = self.camera.ray(x, y, self.window.get_size())
+        return tifo.pick_seat(self.simulation.plan.position, origin, direction)
 
     def _shoot(self, x: int, y: int) -> None:
-        origin, direction = self.camera.ray(x, y, self.window.get_size())
-        plan = self.simulation.plan
-        seat = tifo.pick_seat(plan.position, origin, direction)
-        if seat is None:
-            self.overlay.say("the ball misses the stands")
-            return
-        px, py, pz = (float(value) for value in plan.position[:, seat])
-        self.simulation.send(tifo.BallHit(place=(px, py + 1.0, pz)))
-        self.attention.stare((px, py + 1.0, pz))
-        self.overlay.say(f"the ball hits seat {plan.label(seat)}")
+        self._pointer = (x, y)
+        self._happen("ball_in_crowd", 0)
 
 
 def run_window(show: Show, console: Console) -> int:

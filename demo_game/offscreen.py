@@ -19,7 +19,7 @@ from rich.progress import (
 
 import tifo
 
-from .app import Show, make_simulation
+from .app import Show, make_simulation, plan_events
 from .attention import Attention
 from .recording import Clip, write_png
 
@@ -38,13 +38,17 @@ def render(show: Show, console: Console) -> int:
     """
     with console.status("building the stadium"):
         simulation, camera = make_simulation(show)
+        events = plan_events(show, simulation)
         stage = tifo.Stage.offscreen(simulation, show.size)
     for note in simulation.crowd.character.notes:
         console.print(f"[dim]note:[/] {note}")
     picture, clip = _targets(show, console)
     rate = SOFTWARE_PICTURES_A_SECOND if stage.is_software else PICTURES_A_SECOND
     seconds = DEFAULT_SECONDS if show.seconds is None else show.seconds
-    pixels = _film(simulation, stage, camera, seconds, rate, clip, console)
+    if show.events is None:
+        events = [tifo.Goal(side=0, time=GOAL_AT * seconds)]
+        simulation.send(events[0])
+    pixels = _film(simulation, stage, camera, seconds, rate, clip, console, events)
     if picture is not None:
         write_png(picture, pixels)
     stage.close()
@@ -74,6 +78,7 @@ def _film(
     rate: int,
     clip: Path | None,
     console: Console,
+    events: list[tifo.Event],
 ) -> NDArray[np.uint8]:
     """Let the show run and draw it: every picture for a clip, else only the last; the last one."""
     pictures = max(round(seconds * rate), 1)
@@ -84,15 +89,14 @@ def _film(
         MofNCompleteColumn(),
         TimeRemainingColumn(),
     )
-    attention = Attention(simulation)
+    attention, coming = Attention(simulation), list(events)
     with ExitStack() as stack:
         progress = stack.enter_context(Progress(*columns, console=console))
         recorder = stack.enter_context(Clip(clip, stage.size, rate)) if clip else None
         task = progress.add_task(f"{len(simulation.crowd):,} spectators", total=pictures)
-        for number, due in enumerate(ticks):
-            if number == int(GOAL_AT * pictures):
-                simulation.send(tifo.Goal(side=0))
-                attention.goal(0)
+        for due in ticks:
+            while coming and (coming[0].time or 0.0) <= simulation.clock.tick / 60:
+                attention.follow(coming.pop(0))
             simulation.run(seconds=due / 60)
             attention.advance(due / 60)
             if recorder is not None:

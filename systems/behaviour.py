@@ -8,6 +8,7 @@ import esper
 import numpy as np
 
 from ..components import Behaviour, Emotion, MotionState, Placement, Seat, Team
+from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.display import motions_to_show
 from ..engine.behaviour.emotion import relax
@@ -18,6 +19,7 @@ from ..engine.behaviour.responses import respond
 from ..engine.clock import Clock
 from ..engine.streams.pool import POSE_RATE
 from .query import crowds
+from .talking import Talking
 
 GUIDED_BLEND = 12.0
 """Pose ticks in which an order takes effect or ends."""
@@ -54,7 +56,9 @@ class BehaviourSystem(esper.Processor):
             return esper.component_for_entity(entity, kind)
 
         emotion, team = component(Emotion), component(Team)
+        company = component(Company)
         for event in component(EventQueue).take(tick / POSE_RATE):
+            company.see(event, table, team, component(Placement))
             respond(
                 event,
                 table,
@@ -66,7 +70,8 @@ class BehaviourSystem(esper.Processor):
                 tick,
                 self._rng,
             )
-        relax(emotion, tick, behaviour.reacting)
+        relax(emotion, tick, behaviour.reacting, contagious=True)
+        company.step(tick, emotion, behaviour)
         changed = step(
             table,
             behaviour,
@@ -76,6 +81,10 @@ class BehaviourSystem(esper.Processor):
             held_until=motion.busy_until,
             blend=motion.blend,
         )
+        company.listen(table, behaviour, changed, tick)
+        talking = esper.try_component(entity, Talking)
+        if talking is not None and len(changed):
+            talking.update(entity, table, behaviour, changed, self._rng)
         guidance = component(Guidance)
         told = guidance.step(tick, behaviour)
         if len(told):

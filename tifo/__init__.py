@@ -38,7 +38,8 @@ from .engine.assets.retarget import (
 )
 from .engine.assets.spectator import builtin_spectator
 from .engine.behaviour import BehaviourTable, load_table
-from .engine.behaviour.events import BallHit, Event, Goal
+from .engine.behaviour.event_file import load_events
+from .engine.behaviour.events import PLACED, BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
 from .engine.crowd.pick import pick_seat
@@ -99,6 +100,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "PLACED",
     "PROPS",
     "AgentAnimID",
     "Appearance",
@@ -193,6 +195,7 @@ __all__ = [
     "is_instance_valid",
     "load",
     "load_character",
+    "load_events",
     "load_motions",
     "load_scene",
     "load_table",

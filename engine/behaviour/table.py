@@ -150,6 +150,9 @@ class Response:
         Shortest and longest reaction time in seconds.
     excitement, embarrassment, mood, fatigue
         By how much the most impressive event raises or lowers these.
+    applause
+        Benefit of clapping for the most impressive event, 1 that of a good talk; below 0 people
+        refuse to.
     """
 
     gain: float = 0.0
@@ -159,6 +162,7 @@ class Response:
     embarrassment: float = 0.0
     mood: float = 0.0
     fatigue: float = 0.0
+    applause: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,7 +74,16 @@ _RULE = (
     "limits",
     *GUARDS,
 )
-_RESPONSE = ("gain", "seconds", "delay", "excitement", "embarrassment", "mood", "fatigue")
+_RESPONSE = (
+    "gain",
+    "seconds",
+    "delay",
+    "excitement",
+    "embarrassment",
+    "mood",
+    "fatigue",
+    "applause",
+)
 
 
 def load_table(name: str | Path) -> BehaviourTable:
@@ -267,8 +276,8 @@ class _Reader:
                 given = self.table(value, place)
                 self.known(given, _RESPONSE, place)
                 delay = self.pair(given.pop("delay", [0.15, 0.6]), line, "delay", 0.0, 60.0)
-                low = {"gain": 0.0, "seconds": 0.0}
-                high = {"seconds": 3600.0, "gain": 1000.0}
+                low = {"gain": 0.0, "seconds": 0.0, "applause": -10.0}
+                high = {"seconds": 3600.0, "gain": 1000.0, "applause": 10.0}
                 numbers = {
                     key: self.number(
                         value,

@@ -22,7 +22,12 @@ HEAD_RANGE = (-0.08, 0.08)
 
 
 def draw_bodies(
-    count: int, children: float, old: float, height: float, rng: np.random.Generator
+    count: int,
+    children: float,
+    old: float,
+    height: float,
+    rng: np.random.Generator,
+    is_child: NDArray[np.bool_] | None = None,
 ) -> tuple[Body, NDArray[np.float32]]:
     """Bodies of `count` agents, and their uniform scales on a character of adult size.
 
@@ -36,11 +41,18 @@ def draw_bodies(
         Of the character in model space, for girths in its units.
     rng
         Where choices come from.
+    is_child
+        (N,) who the children are; drawn if None.
     """
     body = Body.allocate(count)
     draw = rng.random(count)
-    body.kind[draw < children + old] = OLD
-    body.kind[draw < children] = CHILD
+    if is_child is None:
+        is_child = draw < children
+        draw = draw - children
+    else:
+        draw *= 1.0 - children
+    body.kind[draw < old] = OLD
+    body.kind[is_child] = CHILD
     spread, wide = rng.standard_normal((2, count))
     scale = np.empty(count)
     for kind in (ADULT, CHILD, OLD):
