@@ -3,7 +3,7 @@
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help demo test test-all bench lint clean
+.PHONY: help demo test test-all bench pictures lint clean
 
 # Passed on by demo and bench: make demo ARGS="--help"
 ARGS ?=
@@ -18,6 +18,10 @@ demo: ## show the stadium in a window, or draw pictures of it where there is no 
 bench: ## measure the simulation and the drawing
 	@.ci/setup demo
 	@.venv/bin/tifo bench $(ARGS)
+
+pictures: ## draw the pictures of docs/ that are made by code
+	@.ci/setup demo
+	@.venv/bin/python -m tifo.benchmarks.pictures
 
 test: lint ## format, lint, types, and all tests but the slow ones
 	@.ci/setup test

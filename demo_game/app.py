@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, Protocol
 
 import tifo
 
+from .captions import Caption
 from .recording import check_writable
 
+SceneName = Literal["stadium", "lab"]
 HAND_OVER = "no display here, so the demo is rendered offscreen"
 
 
@@ -20,7 +24,7 @@ class Show:
     Parameters
     ----------
     spec
-        Stadium and crowd.
+        Stadium and crowd; of the lab only the seed.
     scale
         Metres a unit of BVH files; guessed if None.
     size
@@ -35,6 +39,8 @@ class Show:
         File with what happens, or None.
     fullscreen, vsync
         Of the window.
+    scene
+        What is shown: a match in the stadium, or the lab.
     """
 
     spec: tifo.CrowdSpec
@@ -47,6 +53,30 @@ class Show:
     events: str | None = None
     fullscreen: bool = False
     vsync: bool = True
+    scene: SceneName = "stadium"
+
+
+class Scene(Protocol):
+    """What the demo can show."""
+
+    keys: str
+    """Lines that say which keys are the scene's own."""
+
+    @property
+    def simulation(self) -> tifo.Simulation:
+        """Its stand and crowd."""
+
+    def camera(self, name: str, size: tuple[int, int]) -> tifo.FreeCamera:
+        """The camera ``tv``, ``close`` or ``bowl``, for a picture of `size` pixels."""
+
+    def advance(self, seconds: float) -> None:
+        """Let happen what is no part of the simulation itself."""
+
+    def captions(self) -> Sequence[Caption]:
+        """Words in the picture."""
+
+    def happen(self, kind: str, side: int, seat: int | None = None) -> str:
+        """Let an event of a side happen, some kinds of it at a seat; what is said of it."""
 
 
 def play(show: Show, *, headless: bool) -> int:
@@ -69,18 +99,27 @@ def play(show: Show, *, headless: bool) -> int:
     return run_window(show, console)
 
 
-def make_simulation(show: Show) -> tuple[tifo.Simulation, tifo.FreeCamera]:
-    """The stadium of a show, and a camera where the show begins.
+def make_scene(show: Show) -> Scene:
+    """What a show shows.
 
     Raises
     ------
     AssetError
         If a file can't be used.
+    ValueError
+        If the lab is asked for with a character, motions or events of the user's.
     """
-    character = tifo.character_of(show.spec, show.scale)
-    simulation = tifo.Simulation(show.spec, character)
-    presets = tifo.camera_presets(simulation.plan)
-    return simulation, tifo.FreeCamera.looking(*presets[show.camera])
+    if show.scene == "lab":
+        from .lab import Lab
+
+        if show.spec.character or show.spec.motions:
+            raise ValueError("the lab shows the built-in spectator and its motions only")
+        if show.events is not None:
+            raise ValueError("nothing of an events file happens in the lab")
+        return Lab(show.spec.seed)
+    from .match import Match
+
+    return Match(show.spec, show.scale, show.events)
 
 
 def plan_events(show: Show, simulation: tifo.Simulation) -> list[tifo.Event]:

@@ -10,11 +10,12 @@ from rich.console import Console
 
 import tifo
 
-from .app import Show, make_simulation, plan_events
-from .attention import Attention
-from .keys import EVENT_KEYS, HINT, MESSAGES, SIDELESS
+from .app import Show, make_scene
+from .captions import draw_captions, place_captions
+from .keys import EVENT_KEYS, VIEW_KEYS
 from .overlay import Overlay
 from .recording import Clip, write_png
+from .signs import Signs
 
 RECORDED_RATE = 30
 FLY_SPEED = 12.0
@@ -36,9 +37,9 @@ class Game:
         self.console = console
         self.show = show
         with console.status("building the stadium"):
-            self.simulation, self.camera = make_simulation(show)
-        self._coming = plan_events(show, self.simulation)
-        self.attention = Attention(self.simulation)
+            self.scene = make_scene(show)
+        self.simulation = self.scene.simulation
+        self.camera = self.scene.camera(show.camera, show.size)
         self.window: Any = tifo.open_window(
             show.size, "tifo", vsync=show.vsync, fullscreen=show.fullscreen
         )
@@ -49,7 +50,9 @@ class Game:
         self._mouse: Any = pyglet.window.mouse
         self.keys: Any = pyglet.window.key.KeyStateHandler()
         self.stage = tifo.Stage(self.simulation, self.window.get_framebuffer_size())
-        self.overlay = Overlay(self.window, HINT)
+        greet = not self.scene.captions()
+        self.overlay = Overlay(self.window, self.scene.keys + VIEW_KEYS, greet=greet)
+        self.signs = Signs(self.window)
         self.overlay.listen(self.simulation.crowd)
         self.paused = False
         self._pointer = (show.size[0] // 2, show.size[1] // 2)
@@ -78,13 +81,13 @@ class Game:
         delta = real if self._clip is None else 1 / RECORDED_RATE
         self._steer(real)
         passed = 0.0 if self.paused else delta
-        while self._coming and (self._coming[0].time or 0.0) <= self.simulation.clock.tick / 60:
-            self.attention.follow(self._coming.pop(0))
-        self.attention.advance(passed)
+        self.scene.advance(passed)
         self.stage.draw(self.camera, passed)
         if self._clip is not None:
-            self._clip.add(self.stage.pixels())
+            self._clip.add(self._pixels())
         self.stage.present(self.window.get_framebuffer_size())
+        size = self.window.get_size()
+        self.signs.draw(place_captions(self.scene.captions(), self.camera, size))
         self.overlay.draw(real, self.simulation, self.stage.counts, paused=self.paused)
 
     def on_resize(self, width: int, height: int) -> None:
@@ -96,13 +99,12 @@ class Game:
         """What single keys do."""
         key = self._key
         presets = {key._1: "tv", key._2: "close", key._3: "bowl"}
-        kind = EVENT_KEYS.get(chr(symbol).upper()) if symbol < 128 else None
-        if kind is not None or symbol == key.H:
-            is_away = symbol == key.H or bool(modifiers & key.MOD_SHIFT)
-            self._happen(kind or "goal", int(is_away))
+        if (kind := EVENT_KEYS.get(chr(symbol).upper()) if symbol < 128 else None) is not None:
+            self._happen(kind, int(bool(modifiers & key.MOD_SHIFT)))
+        elif symbol == key.H:
+            self._happen("goal", 1)
         elif symbol in presets:
-            eye, target = tifo.camera_presets(self.simulation.plan)[presets[symbol]]
-            self.camera = tifo.FreeCamera.looking(eye, target)
+            self.camera = self.scene.camera(presets[symbol], self.stage.size)
         elif symbol == key.C:
             fly = self.camera.mode is tifo.CameraMode.ORBIT
             self.camera.mode = tifo.CameraMode.FLY if fly else tifo.CameraMode.ORBIT
@@ -118,7 +120,7 @@ class Game:
             self.overlay.help_shown = not self.overlay.help_shown
         elif symbol == key.F12:
             name = f"tifo-{datetime.now():%Y%m%d-%H%M%S}.png"
-            write_png(name, self.stage.pixels())
+            write_png(name, self._pixels())
             self.overlay.say(f"wrote {name}")
 
     def on_mouse_motion(self, x: int, y: int, dx: int, dy: int) -> None:
@@ -155,7 +157,7 @@ class Game:
             self.console.print(f"wrote [bold]{self.show.record}[/]")
         self.window.switch_to()
         if self.show.screenshot:
-            write_png(self.show.screenshot, self.stage.pixels())
+            write_png(self.show.screenshot, self._pixels())
             self.console.print(f"wrote [bold]{self.show.screenshot}[/]")
         self.stage.close()
 
@@ -171,26 +173,21 @@ class Game:
             self.camera.fly(*moves)
             self.camera.keep_above(0.4)
 
+    def _pixels(self) -> Any:
+        """The last picture with the words in it."""
+        placed = place_captions(self.scene.captions(), self.camera, self.stage.size)
+        return draw_captions(self.stage.pixels(), placed) if placed else self.stage.pixels()
+
     def _happen(self, kind: str, side: int) -> None:
         """Let something happen, where the mouse points if it needs a place."""
-        place, seat = None, None
+        seat = None
         if kind in tifo.PLACED:
-            seat = self._seat(*self._pointer)
+            origin, direction = self.camera.ray(*self._pointer, self.window.get_size())
+            seat = tifo.pick_seat(self.simulation.plan.position, origin, direction)
             if seat is None:
                 self.overlay.say("the mouse points at no seat")
                 return
-            x, y, z = (float(value) for value in self.simulation.plan.position[:, seat])
-            place = (x, y + 1.0, z)
-        owner = None if kind in SIDELESS or place is not None else side
-        event = tifo.Event(kind, owner, place=place)
-        self.simulation.send(event)
-        self.attention.follow(event)
-        label = "" if seat is None else self.simulation.plan.label(seat)
-        self.overlay.say(MESSAGES[kind].format(side=("home", "away")[side], seat=label))
-
-    def _seat(self, x: int, y: int) -> int | None:
-        origin, direction = self.camera.ray(x, y, self.window.get_size())
-        return tifo.pick_seat(self.simulation.plan.position, origin, direction)
+        self.overlay.say(self.scene.happen(kind, side, seat))
 
     def _shoot(self, x: int, y: int) -> None:
         self._pointer = (x, y)

@@ -41,11 +41,13 @@ MESSAGES = {
 SIDELESS = frozenset({"kick_off", "half_time", "anthem", "cue"})
 """Kinds that the keys make everybody's."""
 
-HINT = (
+MATCH_KEYS = (
     "G / H goal home / away     with Shift, the away side's:  N near miss   O foul   Y card   "
     "R referee   U substitution   I corner   X final whistle\n"
     "K kick-off   L half-time   M anthem   J applause        where the mouse points:  click or B "
     "ball   T player   Z Mexican wave\n"
+)
+VIEW_KEYS = (
     "1 2 3  cameras        C  orbit or fly        WASD QE  move        drag, scroll  look\n"
     "F  fullscreen        V  vsync        P  pause        F12  screenshot        Esc  quit"
 )

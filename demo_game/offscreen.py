@@ -19,8 +19,8 @@ from rich.progress import (
 
 import tifo
 
-from .app import Show, make_simulation, plan_events
-from .attention import Attention
+from .app import Scene, Show, make_scene
+from .captions import draw_captions, place_captions
 from .recording import Clip, write_png
 
 PICTURES_A_SECOND = 30
@@ -37,18 +37,13 @@ def render(show: Show, console: Console) -> int:
     can be written.
     """
     with console.status("building the stadium"):
-        simulation, camera = make_simulation(show)
-        events = plan_events(show, simulation)
-        stage = tifo.Stage.offscreen(simulation, show.size)
-    for note in simulation.crowd.character.notes:
+        scene = make_scene(show)
+        stage = tifo.Stage.offscreen(scene.simulation, show.size)
+    for note in scene.simulation.crowd.character.notes:
         console.print(f"[dim]note:[/] {note}")
     picture, clip = _targets(show, console)
     rate = SOFTWARE_PICTURES_A_SECOND if stage.is_software else PICTURES_A_SECOND
-    seconds = DEFAULT_SECONDS if show.seconds is None else show.seconds
-    if show.events is None:
-        events = [tifo.Goal(side=0, time=GOAL_AT * seconds)]
-        simulation.send(events[0])
-    pixels = _film(simulation, stage, camera, seconds, rate, clip, console, events)
+    pixels = _film(show, scene, stage, rate, clip, console)
     if picture is not None:
         write_png(picture, pixels)
     stage.close()
@@ -71,17 +66,18 @@ def _targets(show: Show, console: Console) -> tuple[Path | None, Path | None]:
 
 
 def _film(
-    simulation: tifo.Simulation,
+    show: Show,
+    scene: Scene,
     stage: tifo.Stage,
-    camera: tifo.FreeCamera,
-    seconds: float,
     rate: int,
     clip: Path | None,
     console: Console,
-    events: list[tifo.Event],
 ) -> NDArray[np.uint8]:
     """Let the show run and draw it: every picture for a clip, else only the last; the last one."""
+    seconds = DEFAULT_SECONDS if show.seconds is None else show.seconds
+    camera = scene.camera(show.camera, show.size)
     pictures = max(round(seconds * rate), 1)
+    goal = int(GOAL_AT * pictures) if show.events is None else None
     ticks = np.diff(np.round(np.linspace(0, seconds * 60, pictures + 1)).astype(int))
     columns = (
         TextColumn("[progress.description]{task.description}"),
@@ -89,20 +85,24 @@ def _film(
         MofNCompleteColumn(),
         TimeRemainingColumn(),
     )
-    attention, coming = Attention(simulation), list(events)
+    simulation = scene.simulation
     with ExitStack() as stack:
         progress = stack.enter_context(Progress(*columns, console=console))
         recorder = stack.enter_context(Clip(clip, stage.size, rate)) if clip else None
         task = progress.add_task(f"{len(simulation.crowd):,} spectators", total=pictures)
-        for due in ticks:
-            while coming and (coming[0].time or 0.0) <= simulation.clock.tick / 60:
-                attention.follow(coming.pop(0))
+        for number, due in enumerate(ticks):
+            if number == goal:
+                scene.happen("goal", 0)
             simulation.run(seconds=due / 60)
-            attention.advance(due / 60)
+            scene.advance(due / 60)
             if recorder is not None:
-                stage.draw(camera)
-                recorder.add(stage.pixels())
+                recorder.add(_picture(scene, stage, camera))
             progress.advance(task)
-        if recorder is None:
-            stage.draw(camera)
-    return stage.pixels()
+        return _picture(scene, stage, camera)
+
+
+def _picture(scene: Scene, stage: tifo.Stage, camera: tifo.FreeCamera) -> NDArray[np.uint8]:
+    """What the camera sees now, with the words in it."""
+    stage.draw(camera)
+    pixels, words = stage.pixels(), scene.captions()
+    return draw_captions(pixels, place_captions(words, camera, stage.size)) if words else pixels

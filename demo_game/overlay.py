@@ -21,10 +21,12 @@ class Overlay:
     window
         The pyglet window.
     hint
-        The keys; shown for a few seconds at first, and while F1 is on.
+        The keys; shown while F1 is on.
+    greet
+        Whether they are shown for a few seconds at first, too.
     """
 
-    def __init__(self, window: Any, hint: str) -> None:
+    def __init__(self, window: Any, hint: str, *, greet: bool = True) -> None:
         try:
             import pyglet.text.layout
         except ImportError as error:
@@ -35,7 +37,7 @@ class Overlay:
 
         self._window = window
         self.help_shown = False
-        self._hint_left = HINT_SECONDS
+        self._hint_left = HINT_SECONDS if greet else 0.0
         self._message_left = 0.0
         self._smooth = 1 / 60
         self._claps = 0.0
@@ -62,9 +64,9 @@ class Overlay:
         self._claps += float(weights.sum())
 
     def say(self, text: str) -> None:
-        """Show a message for a few seconds."""
+        """Show a message for a few seconds; nothing for an empty one."""
         self._message.text = text
-        self._message_left = MESSAGE_SECONDS
+        self._message_left = MESSAGE_SECONDS if text else 0.0
 
     def draw(self, delta: float, simulation: tifo.Simulation, counts: Any, *, paused: bool) -> None:
         """Draw the labels; `delta` is the time since the last frame in seconds."""

@@ -136,6 +136,7 @@ def enter(top: Node, tree: SceneTree) -> None:
         tree.order.changed()
         if "process_priority" in node.__dict__:
             tree.order.prioritised = True
+        node._entered()
         guard(tree, node, "_enter_tree")
         emit(node, "tree_entered")
         emit(tree, "node_added", node)
@@ -185,6 +186,7 @@ def leave(top: Node) -> None:
         node._leaving = False
     tree.order.shrunk()
     for node in nodes:
+        node._has_left(freed=False)
         emit(tree, "node_removed", node)
         emit(node, "tree_exited")
 
@@ -208,6 +210,7 @@ def end(top: Node) -> None:
     for node in nodes:
         node._freed = node._queued = True
     for node in reversed(nodes):
+        node._has_left(freed=True)
         for task in [*node._tasks]:
             task.cancel()
         for connection in [*node._incoming]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import Callable, Coroutine, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, overload
 
 from . import lifecycle
@@ -135,6 +135,16 @@ class Node(Exported):
 
     def _made_ready(self) -> None:
         """What node types of this package do just before `_ready`."""
+
+    def _sources(self) -> Iterable[tuple[str, Callable[[], object]]]:
+        """Files that node types of this package were made from, and what to do when they change."""
+        return ()
+
+    def _entered(self) -> None:
+        """What node types of this package do when they enter a tree, before `_enter_tree`."""
+
+    def _has_left(self, *, freed: bool) -> None:
+        """What node types of this package do after they left a tree, or were freed."""
 
     # Names and places
 

@@ -252,6 +252,10 @@ class BoundSignal(Generic[*Ts]):
             return args
         return args[0] if args else None
 
+    def retype(self, count: int) -> None:
+        """Take another number of arguments: the declaration was changed in a running game."""
+        self._count = count
+
     def wait(self, waiter: Waiter) -> Connection:
         """Resume `waiter` once at the next emission; FreedError if there can't be one."""
         if self._closed:

@@ -6,13 +6,11 @@ import esper
 
 from ..components import AgentAnimID, Transition
 from ..engine.clock import Clock
-from ..engine.streams.event_delivery import deliver
 from ..engine.streams.event_feed import ClipEventFeed
+from ..engine.streams.overlay_events import deliver_whole
+from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import StreamPool
 from .query import crowds
-
-BODY = 0
-"""The part whose events a crowd hears."""
 
 
 class ClipEventSystem(esper.Processor):
@@ -25,4 +23,5 @@ class ClipEventSystem(esper.Processor):
         for entity, (pool, anim, transition) in crowds(StreamPool, AgentAnimID, Transition):
             feed = esper.try_component(entity, ClipEventFeed)
             if feed is not None and feed.names:
-                feed.post(deliver(pool, anim, transition, BODY, clock.pose_tick))
+                overlays = esper.try_component(entity, OverlayStage)
+                feed.post(deliver_whole(pool, anim, transition, overlays, clock.pose_tick))

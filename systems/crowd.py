@@ -46,18 +46,21 @@ from ..engine.streams.ladder import BlendLadder, Focus
 from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
+from .crowd_drawing import DrawingCalls
 from .crowd_overlays import BLEND_SECONDS, OverlayCalls
+from .crowd_queries import QueryCalls
 from .guiding import Guiding
 
 if TYPE_CHECKING:
     from .part import Part
+    from .render_embedded import CrowdMirrors
 
 FOCUS_RADIUS = 60.0
 """Metres around a focus in which agents never jump."""
 
 
 @dataclass(slots=True, eq=False)
-class Crowd(OverlayCalls, Guiding):
+class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -82,6 +85,10 @@ class Crowd(OverlayCalls, Guiding):
         Clip events; None in a baked crowd.
     physique
         Proportions of the character, its body types and the seats.
+    world
+        Name of the esper world that the entity lives in.
+    mirrors
+        Holds what `draw` keeps on the GPU, once it was called.
     baked
         Baked poses and who shows which; None in a streamed crowd.
     parts
@@ -117,6 +124,8 @@ class Crowd(OverlayCalls, Guiding):
     baked: tuple[BakedPoses, BakedAnim] | None = None
     physique: Physique | None = None
     parts: dict[str, Part] = field(default_factory=dict)
+    world: str = "default"
+    mirrors: list[CrowdMirrors] = field(default_factory=list)
 
     def __len__(self) -> int:
         """Number of agents, absent ones included."""

@@ -6,7 +6,7 @@ import esper
 
 from ..components import Attachment, Detail, PartBits, Placement, Seat, View
 from ..engine.clock import Clock
-from ..engine.crowd.detail import select_detail, select_part
+from ..engine.crowd.detail import Bounds, select_detail, select_part
 from ..engine.crowd.figure import Figure
 from .query import crowds
 
@@ -34,11 +34,19 @@ class DetailSystem(esper.Processor):
     def process(self, clock: Clock) -> None:
         """One frame."""
         views = crowds(View)
-        if not views:
-            return
-        view = views[0][1][0]
+        if views:
+            self.select(views[0][1][0])
+
+    def select(self, view: View, only: int | None = None) -> None:
+        """Choose for a camera: in all crowds, or in `only` one."""
         for entity, (detail, placement, seat) in crowds(Detail, Placement, Seat):
+            if only not in (None, entity):
+                continue
             figure = esper.component_for_entity(entity, Figure)
+            bounds = esper.try_component(entity, Bounds)
+            if bounds is None or bounds.version != placement.version:
+                bounds = Bounds.of(placement)
+                esper.add_component(entity, bounds)
             select_detail(
                 detail,
                 placement,
@@ -47,6 +55,7 @@ class DetailSystem(esper.Processor):
                 view,
                 levels=self._levels,
                 coarseness=self.coarseness,
+                bounds=bounds,
             )
         for _, (attachment, detail) in crowds(Attachment, Detail):
             parent = esper.try_component(attachment.parent, Detail)

@@ -178,10 +178,10 @@ def _check_part(
     if appearance is not None:
         for column in fields(appearance):
             colours = getattr(appearance, column.name)
-            if isinstance(colours, np.ndarray) and colours.shape != (len(crowd), 4):
+            expected = (len(crowd),) if column.name == "pattern" else (len(crowd), 4)
+            if isinstance(colours, np.ndarray) and colours.shape != expected:
                 raise ValueError(
-                    f"appearance: {column.name} has shape {colours.shape}, "
-                    f"expected ({len(crowd)}, 4)"
+                    f"appearance: {column.name} has shape {colours.shape}, expected {expected}"
                 )
 
 

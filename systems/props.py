@@ -51,6 +51,8 @@ def give_props(crowd: Crowd, share: float, *, tick: int) -> dict[str, Part]:
     has = (side >= 0) & (rng.random(len(crowd)) < share)
     kind = rng.random(len(crowd))
     colours = draw_appearance(side, rng, fervour=1.0)
+    # A shirt's pattern is not that of a flag.
+    colours.pattern[:] = 0
     parts = {}
     for name, (first, last) in _KINDS.items():
         prop = builtin_prop(name)

@@ -25,12 +25,15 @@ from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.crowd.stadium import build_seats, build_stadium_mesh
 from ..engine.crowd.stadium_mesh import StadiumMesh
+from ..engine.export import Recording
+from ..engine.export.targets import Progress
 from ..engine.streams.offsets import OffsetSource
 from .crowd import Crowd
 from .detail import DetailSystem
 from .part import Part
 from .parts import PartMotion, add_part, remove_part
 from .props import give_props
+from .recording import Agents, record
 from .schedule import Schedule, tick_systems
 from .spawn import spawn_crowd
 
@@ -105,6 +108,28 @@ class Simulation:
         with self.active():
             for _ in range(round(seconds * 60)):
                 self.schedule.tick()
+
+    def record(
+        self,
+        agents: Agents = None,
+        *,
+        start: float = 0.0,
+        seconds: float = 0.0,
+        fps: float = 30.0,
+        progress: Progress | None = None,
+    ) -> Recording:
+        """Let time pass and take down what agents show; see `tifo.systems.recording.record`."""
+        with self.active():
+            return record(
+                self.crowd,
+                self.clock,
+                self.schedule.tick,
+                agents,
+                start=start,
+                seconds=seconds,
+                fps=fps,
+                progress=progress,
+            )
 
     def look(self, view: NDArray[np.float32], projection: NDArray[np.float32], height: int) -> None:
         """Set the camera that culling and drawing use; see `tifo.components.View`."""

@@ -45,6 +45,7 @@ from ..engine.crowd.figure_masks import figure_masks
 from ..engine.crowd.motions import Role
 from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
+from ..engine.crowd.regions import find_regions
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.overrides import OverrideSet
@@ -59,6 +60,7 @@ from ..engine.streams.slots import SlotPool
 from ..engine.streams.stream_needs import StreamNeeds
 from ..engine.streams.uniques import UniquePool
 from .behaviour import columns_of
+from .casting import cast_crowd
 from .crowd import Crowd
 from .talking import Talking
 
@@ -91,11 +93,10 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(8)
-    (
-        *(rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds),
-        rng_company,
-    ) = map(np.random.default_rng, seeds)
+    seeds = np.random.SeedSequence(spec.seed).spawn(9)
+    rngs = map(np.random.default_rng, seeds)
+    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, *rngs_of_people = rngs
+    rng_bodies, rng_deeds, rng_company, rng_casting = rngs_of_people
     clips = character.clips or (rest_clip(character.skeleton),)
     figure = make_figure(character)
     behaviour_table = load_table(spec.behaviour)
@@ -138,7 +139,7 @@ def spawn_crowd(
         placement=_place(plan, figure, size, rng_place),
         body=body,
         team=team,
-        appearance=draw_appearance(side, rng_looks),
+        appearance=draw_appearance(side, rng_looks, kind=body.kind),
         motion=MotionState.allocate(shown),
         emotion=emotion,
         behaviour=behaviour,
@@ -149,6 +150,7 @@ def spawn_crowd(
         events=EventQueue(),
         company=company,
         overrides=OverrideSet(character.skeleton, count),
+        world=str(esper.current_world),
     )
     crowd.entity = esper.create_entity(
         crowd.seat,
@@ -168,6 +170,7 @@ def spawn_crowd(
         company,
         party,
         figure,
+        find_regions(character, figure, tint=spec.tint),
         character,
     )
     bank = ClipBank(character.skeleton, cast.clips)
@@ -175,6 +178,10 @@ def spawn_crowd(
         _add_baked(crowd, bank, figure, rng_motion)
     else:
         _add_streams(crowd, bank, figure, cast, offsets or spec.offsets, rng_motion)
+    if spec.casting:
+        # Offsets that the user gave stay with whom they were given to.
+        own = callable(offsets or spec.offsets)
+        cast_crowd(crowd, rng_casting, motions=not own)
     types = crowd.pool.twins.types if crowd.pool is not None and len(crowd.pool.twins) else ()
     adult = SPECTATOR_HEIGHT / figure.height
     crowd.physique = measure(character.skeleton, figure, types, bank, library, adult)
@@ -190,7 +197,7 @@ def _place(
     count = plan.count
     turn = rng.normal(0.0, 0.12, count).clip(-0.35, 0.35)
     return Placement(
-        position=plan.position,
+        position=plan.position.copy(),
         yaw=(plan.yaw + turn).astype(np.float32),
         scale=(size * SPECTATOR_HEIGHT / figure.height).astype(np.float32),
     )
@@ -208,7 +215,7 @@ def _add_streams(
     pool = StreamPool(
         crowd.character.skeleton,
         bank,
-        capacity=spec.streams,
+        capacity=spec.streams + spec.spare_streams,
         history=spec.history,
         markers=figure.joints,
         uniques=spec.uniques,
@@ -221,7 +228,7 @@ def _add_streams(
     if started.ways is not None:
         parts.append(started.ways)
     if spec.rest_idle:
-        parts.append(StreamNeeds(spec.streams, always=started.kept))
+        parts.append(StreamNeeds(len(started.kept), always=started.kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
     # before the first one.
     for tick in range(1 - spec.history, 1):

@@ -130,7 +130,7 @@ def test_make_alone_lists_the_targets() -> None:
         check=True,
     ).stdout
     names = re.findall(r"^  make (\S+) +\S", listed, re.MULTILINE)
-    assert set(names) == {"help", "demo", "bench", "test", "test-all", "lint", "clean"}
+    assert set(names) == {"help", "demo", "bench", "pictures", "test", "test-all", "lint", "clean"}
 
 
 def test_the_setup_explains_a_missing_python(run_setup: Setup) -> None:

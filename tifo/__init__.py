@@ -42,25 +42,34 @@ from .engine.behaviour.event_file import load_events
 from .engine.behaviour.events import PLACED, BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
+from .engine.crowd.kits import PATTERNS, Kit
 from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
+from .engine.export import Exported, Recording
 from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
+from .systems.casting import clone_report
 from .systems.crowd import Crowd
+from .systems.export import export_gltf, export_usd
 from .systems.part import Part
 from .systems.parts import add_part, remove_part
 from .systems.props import give_props
+from .systems.recording import Recorder
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
 
 if TYPE_CHECKING:
+    from .engine.animation.controllers import OneShotRequest
+    from .engine.gl.adopted import AdoptedContext, adopt_context
     from .engine.gl.context import open_window
+    from .scripting import nodes
     from .scripting.easing import Ease, Trans, ease
     from .scripting.exports import Export, export, exports_of
+    from .scripting.hot_reload import HotReload
     from .scripting.input_events import (
         InputEvent,
         InputEventAction,
@@ -75,6 +84,17 @@ if TYPE_CHECKING:
     from .scripting.lifecycle import ProcessMode
     from .scripting.node import Node, is_instance_valid
     from .scripting.node3d import Node3D
+    from .scripting.nodes import (
+        Agent,
+        AnimationPlayer,
+        AnimationTree,
+        Ball,
+        Camera,
+        Player,
+        Section,
+        Stadium,
+        StateMachinePlayback,
+    )
     from .scripting.packed_scene import PackedScene, load_scene
     from .scripting.paths import NodePathError
     from .scripting.reports import FreedError, ScriptError
@@ -95,19 +115,27 @@ if TYPE_CHECKING:
     from .scripting.tween import Tween, TweenPause
     from .scripting.vectors import Quaternion, Vector3
     from .scripting.window_input import WindowInput
+    from .scripting.window_run import run
     from .systems.render import RenderSystem
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "PATTERNS",
     "PLACED",
     "PROPS",
+    "AdoptedContext",
+    "Agent",
     "AgentAnimID",
+    "AnimationPlayer",
+    "AnimationTree",
     "Appearance",
     "AssetError",
+    "Ball",
     "BallHit",
     "Behaviour",
     "BehaviourTable",
+    "Camera",
     "CameraMode",
     "Character",
     "ClipEvent",
@@ -118,11 +146,13 @@ __all__ = [
     "Emotion",
     "Event",
     "Export",
+    "Exported",
     "FreeCamera",
     "FreedError",
     "Goal",
     "GraphicsError",
     "GroupCall",
+    "HotReload",
     "Humanoid",
     "Input",
     "InputEvent",
@@ -134,6 +164,7 @@ __all__ = [
     "InputEventMouseMotion",
     "InputMap",
     "JointOverride",
+    "Kit",
     "LookAt",
     "Loop",
     "Material",
@@ -143,14 +174,18 @@ __all__ = [
     "Node3D",
     "NodePathError",
     "NotHumanoidError",
+    "OneShotRequest",
     "OverriddenJoints",
     "PackedScene",
     "Part",
     "Placement",
+    "Player",
     "ProcessCallback",
     "ProcessMode",
     "Prop",
     "Quaternion",
+    "Recorder",
+    "Recording",
     "RenderSystem",
     "Resource",
     "SceneTree",
@@ -158,10 +193,13 @@ __all__ = [
     "Schedule",
     "ScriptError",
     "Seat",
+    "Section",
     "Signal",
     "Simulation",
     "SkinnedMesh",
+    "Stadium",
     "Stage",
+    "StateMachinePlayback",
     "Stream",
     "StreamPool",
     "Task",
@@ -180,14 +218,18 @@ __all__ = [
     "add_motions",
     "add_part",
     "add_systems",
+    "adopt_context",
     "build_seats",
     "builtin_prop",
     "builtin_spectator",
     "camera_presets",
     "character_of",
+    "clone_report",
     "controllers",
     "ease",
     "export",
+    "export_gltf",
+    "export_usd",
     "exports_of",
     "find_loop",
     "give_props",
@@ -202,11 +244,13 @@ __all__ = [
     "look_at",
     "loop_clip",
     "mirror_clip",
+    "nodes",
     "open_window",
     "pick_seat",
     "remove_part",
     "resource_root",
     "retarget",
+    "run",
     "save_resource",
     "save_scene",
     "set_resource_root",
@@ -219,6 +263,8 @@ __all__ = [
 _DRAWING = {
     "RenderSystem": "systems.render",
     "Stage": "scripting.stage",
+    "AdoptedContext": "engine.gl.adopted",
+    "adopt_context": "engine.gl.adopted",
     "open_window": "engine.gl.context",
 }
 _SCRIPTING = {
@@ -231,6 +277,8 @@ _SCRIPTING = {
     "lifecycle": "ProcessMode",
     "node": "Node is_instance_valid",
     "node3d": "Node3D",
+    "nodes": "Agent AnimationPlayer AnimationTree Ball Camera Player Section Stadium"
+    " StateMachinePlayback",
     "packed_scene": "PackedScene load_scene",
     "paths": "NodePathError",
     "reports": "FreedError ScriptError",
@@ -243,6 +291,8 @@ _SCRIPTING = {
     "tween": "Tween TweenPause",
     "vectors": "Quaternion Vector3",
     "window_input": "WindowInput",
+    "window_run": "run",
+    "hot_reload": "HotReload",
 }
 _LATE = _DRAWING | {
     name: f"scripting.{module}" for module, names in _SCRIPTING.items() for name in names.split()
@@ -251,6 +301,12 @@ _LATE = _DRAWING | {
 
 def __getattr__(name: str) -> Any:
     """Load what draws, and what scripts use, only when it is asked for."""
+    if name == "nodes":
+        from .scripting import nodes
+
+        return nodes
+    if name == "OneShotRequest":
+        return controllers.OneShotRequest
     if name not in _LATE:
         raise AttributeError(f"module 'tifo' has no attribute '{name}'")
     from importlib import import_module

@@ -119,12 +119,20 @@ class BallHit(Event):
 
 
 class EventQueue:
-    """Events that wait for their time, in its order, and else in that in which they were sent."""
+    """Events that wait for their time, in its order, and else in that in which they were sent.
 
-    __slots__ = ("_pending",)
+
+    Attributes
+    ----------
+    heard
+        What was taken last: the events of the last pose tick.
+    """
+
+    __slots__ = ("_pending", "heard")
 
     def __init__(self) -> None:
         self._pending: list[Event] = []
+        self.heard: tuple[Event, ...] = ()
 
     def __len__(self) -> int:
         """How many wait."""
@@ -145,11 +153,14 @@ class EventQueue:
     def take(self, now: float = math.inf) -> list[Event]:
         """The events due by `now`, seconds of the simulation; the others go on waiting."""
         if not self._pending:
+            self.heard = ()
             return []
         is_due = [event.time is None or event.time <= now for event in self._pending]
         due = [event for event, is_now in zip(self._pending, is_due, strict=True) if is_now]
         self._pending = [e for e, is_now in zip(self._pending, is_due, strict=True) if not is_now]
-        return sorted(due, key=lambda event: now if event.time is None else event.time)
+        due.sort(key=lambda event: now if event.time is None else event.time)
+        self.heard = tuple(due)
+        return due
 
 
 def _is_number(value: object) -> bool:

@@ -7,7 +7,7 @@ can be brought to the mix of states that it has in the long run before the first
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...components.behaviour import Behaviour
 from .compiled import KEEP, CompiledRule, CompiledTable
-from .table import PIECE
+from .table import PIECE, Relation
 
 Columns = Mapping[str, NDArray[Any]]
 """What rules may ask for, (N,) each: emotions, ``fervour``, and signals."""
@@ -152,14 +152,14 @@ def _move_on(
 ) -> NDArray[np.int64]:
     """Next states of agents whose stays end; ids of those who changed state."""
     b = behaviour
-    state = b.state[machine, agents]
-    target = b.ahead[machine, agents]
-    planned = target >= 0
+    state = b.state[machine].take(agents)
+    target = b.ahead[machine].take(agents)
     length = np.zeros(len(agents), np.float32)
-    for number in _present(state, len(compiled.names)):
-        k = np.flatnonzero((state == number) & ~planned)
+    free = np.where(target < 0, state, np.int16(len(compiled.names)))
+    for number in _present(free, len(compiled.names)):
+        k = np.flatnonzero(free == number)
         if len(k):
-            who, now = agents[k], when[k]
+            who, now = agents.take(k), when.take(k)
             target[k], length[k], stay = _choose(
                 compiled, b, machine, number, who, now, columns, rng
             )
@@ -167,22 +167,23 @@ def _move_on(
             if stays.any():
                 who, now, stay = who[stays], now[stays], stay[stays]
                 ready = _awake(compiled, b, who, number, now + stay)
-                end = b.entered[machine, who] + compiled.limit[number]
-                b.until[machine, who] = np.minimum(ready, end)
-    changes = target != state
-    moving: NDArray[np.int64] = agents[changes]
-    to, at, length = target[changes], when[changes], length[changes]
+                end = b.entered[machine].take(who) + compiled.limit[number]
+                b.until[machine][who] = np.minimum(ready, end)
+    changes = np.flatnonzero(target != state)
+    moving: NDArray[np.int64] = agents.take(changes)
+    to, at = target.take(changes), when.take(changes)
     if blend is not None and machine == 0:
-        blend[moving] = np.where(length > 0, length, blend[moving])
+        length = length.take(changes)
+        blend[moving] = np.where(length > 0, length, blend.take(moving))
     for number in _present(to, len(compiled.names)):
         k = np.flatnonzero(to == number)
-        _enter(compiled, b, machine, moving[k], number, at[k], columns, rng)
+        _enter(compiled, b, machine, moving.take(k), number, at.take(k), columns, rng)
     return moving
 
 
 def _present(states: NDArray[np.int16], count: int) -> list[int]:
-    """The states that occur, ascending."""
-    return [int(k) for k in np.flatnonzero(np.bincount(states, minlength=count))]
+    """The states below `count` that occur, ascending."""
+    return [int(k) for k in np.flatnonzero(np.bincount(states, minlength=count)[:count])]
 
 
 def _awake(
@@ -197,12 +198,17 @@ def _awake(
     As long as an event moves an agent in a state that no rule leaves under it, there is nothing to
     decide.
     """
-    left = behaviour.stirred_until[agents] - when
-    if (left <= 0).all():
+    sleeps = compiled.sleeps[state]
+    if not sleeps.any():
         return when
-    kind, relation = behaviour.event[agents], behaviour.relation[agents]
-    sleeping = (left > 0) & compiled.sleeps[state, kind, relation]
-    ready: NDArray[Any] = np.where(sleeping, when + -(-left // PIECE) * PIECE, when)
+    left = behaviour.stirred_until.take(agents) - when
+    moved = np.flatnonzero(left > 0)
+    if not len(moved):
+        return when
+    who = agents.take(moved)
+    sleeping = moved[sleeps[behaviour.event.take(who), behaviour.relation.take(who)]]
+    ready: NDArray[Any] = when.copy()
+    ready[sleeping] += -(-left[sleeping] // PIECE) * PIECE
     return ready
 
 
@@ -218,14 +224,16 @@ def _choose(
 ) -> tuple[NDArray[np.int16], NDArray[np.float32], NDArray[np.int32]]:
     """Where agents of one state go, blends, and how long those stay who do, all in pose ticks."""
     rules = compiled.rules[state]
-    since = when - behaviour.entered[machine, agents]
+    since = when - behaviour.entered[machine].take(agents)
     asked = _Asked(behaviour, agents, since, when, columns)
     is_open = [(rule, good) for rule in rules if (good := asked.meets(rule)) is not None]
     targets = np.full(len(agents), state, np.int16)
     blends = np.zeros(len(agents), np.float32)
     stays = np.full(len(agents), PIECE, np.int32)
+    chosen: list[slice | NDArray[np.int64]] = []
     if len(is_open) == 1:
-        chosen = [np.flatnonzero(is_open[0][1])]
+        good = is_open[0][1]
+        chosen = [slice(None) if good.all() else np.flatnonzero(good)]
     elif is_open:
         edges = np.empty((len(is_open), len(agents)), np.float32)
         total = np.zeros(len(agents), np.float32)
@@ -235,19 +243,29 @@ def _choose(
             total = row
         draw = rng.random(len(agents), np.float32) * edges[-1]
         np.minimum(draw, np.nextafter(edges[-1], np.float32(0.0)), out=draw)
-        pick = (edges <= draw).sum(axis=0)
+        pick = _count_passed(edges, draw)
         chosen = [np.flatnonzero(pick == number) for number in range(len(is_open))]
-    else:
-        chosen = []
     for (rule, _), k in zip(is_open, chosen, strict=True):
         targets[k], blends[k] = rule.target, rule.blend
         if rule.target == state and rule.pieces != (1, 1):
-            stays[k] = PIECE * rng.integers(rule.pieces[0], rule.pieces[1] + 1, len(k))
-    over = (since >= compiled.limit[state]) & (targets == state)
+            some = stays[k]
+            stays[k] = PIECE * rng.integers(rule.pieces[0], rule.pieces[1] + 1, len(some))
+    over = since >= compiled.limit[state]
     if over.any():
+        over &= targets == state
         targets[over] = compiled.leave_to[state]
         blends[over] = LIMIT_BLEND
     return targets, blends, stays
+
+
+def _count_passed(
+    edges: NDArray[Any] | Sequence[Any], draw: NDArray[np.floating[Any]]
+) -> NDArray[np.int8]:
+    """(K,) how many of some ascending edges, numbers or (K,) each, lie at or below a draw (K,)."""
+    passed = np.zeros(len(draw), np.int8)
+    for edge in edges:
+        passed += edge <= draw
+    return passed
 
 
 class _Asked:
@@ -263,11 +281,14 @@ class _Asked:
     ) -> None:
         self.agents, self.since, self.columns = agents, since, columns
         self.behaviour = behaviour
-        self.active = behaviour.stirred_from[agents] <= when
-        self.active &= behaviour.stirred_until[agents] > when
+        self.active = behaviour.stirred_from.take(agents) <= when
+        self.active &= behaviour.stirred_until.take(agents) > when
         self.any_active = bool(self.active.any())
         if self.any_active:
-            self.kind, self.relation = behaviour.event[agents], behaviour.relation[agents]
+            # Both as one number, by which the pairs of rules are looked up.
+            self.pair = behaviour.event.take(agents).astype(np.intp)
+            self.pair *= len(Relation)
+            self.pair += behaviour.relation.take(agents)
         self.values: dict[str, NDArray[Any]] = {}
 
     def meets(self, rule: CompiledRule) -> NDArray[np.bool_] | None:
@@ -275,7 +296,9 @@ class _Asked:
         if rule.pairs is not None:
             if not self.any_active:
                 return None
-            good = rule.pairs[self.kind, self.relation] & self.active
+            # Whoever no event ever moved has no pair, and is not active.
+            good = rule.pairs.ravel().take(self.pair, mode="clip")
+            good &= self.active
         elif rule.calm:
             good = ~self.active
         else:
@@ -288,7 +311,7 @@ class _Asked:
                 good &= value < below
         for name, wanted in rule.signals:
             if name in self.columns:
-                good &= self.columns[name][self.agents].astype(np.bool_) == wanted
+                good &= self.columns[name].take(self.agents).astype(np.bool_) == wanted
             elif wanted:
                 return None
         return good if good.any() else None
@@ -299,10 +322,10 @@ class _Asked:
             if name == "time":
                 self.values[name] = self.since // PIECE
             elif name == "weight":
-                impact = self.behaviour.impact[self.agents]
+                impact = self.behaviour.impact.take(self.agents)
                 self.values[name] = np.where(self.active, impact, np.float32(0.0))
             elif name in self.columns:
-                self.values[name] = self.columns[name][self.agents]
+                self.values[name] = self.columns[name].take(self.agents)
             else:
                 self.values[name] = np.zeros(len(self.agents), np.float32)
         return self.values[name]
@@ -321,19 +344,20 @@ def _enter(
     """Put agents into a state: how they look there, for how long, and what the channels say."""
     b = behaviour
     variant, motion = _draw_look(compiled, state, agents, columns, rng)
-    planned = b.ahead[machine, agents] == state
+    planned = b.ahead[machine].take(agents) == state
     if planned.any():
-        variant = np.where(planned, b.ahead_variant[machine, agents], variant)
-        motion = np.where(planned, b.ahead_motion[machine, agents], motion)
-        b.ahead[machine, agents] = -1
+        variant = np.where(planned, b.ahead_variant[machine].take(agents), variant)
+        motion = np.where(planned, b.ahead_motion[machine].take(agents), motion)
+        b.ahead[machine][agents] = -1
     if machine == 0:
         # What a body shows goes on where a state has nothing of its own.
-        motion = np.where(motion == KEEP, b.motion[0, agents], motion)
-    b.state[machine, agents] = state
-    b.variant[machine, agents] = variant
-    b.motion[machine, agents] = motion
-    b.entered[machine, agents] = when
-    b.until[machine, agents] = _end_of_stay(compiled, b, state, agents, when, rng)
+        keeps = np.flatnonzero(motion == KEEP)
+        motion[keeps] = b.motion[0].take(agents.take(keeps))
+    b.state[machine][agents] = state
+    b.variant[machine][agents] = variant
+    b.motion[machine][agents] = motion
+    b.entered[machine][agents] = when
+    b.until[machine][agents] = _end_of_stay(compiled, b, state, agents, when, rng)
     for channel, values in (
         (b.posture, compiled.posture),
         (b.arms, compiled.arms),
@@ -366,11 +390,12 @@ def _end_of_stay(
     stay = np.full(len(agents), PIECE * least, np.int64)
     if most > least:
         stay = PIECE * rng.integers(least, most + 1, len(agents))
-    moved = b.stirred_until[agents] > when
-    if moved.any():
+    wakes = compiled.wakes[state]
+    if wakes.any():
         # Whoever comes here on the way to somewhere else, for an event, goes on after a piece.
-        kind, relation = b.event[agents], b.relation[agents]
-        stay[moved & compiled.wakes[state, kind, relation]] = PIECE
+        moved = np.flatnonzero(b.stirred_until.take(agents) > when)
+        who = agents.take(moved)
+        stay[moved[wakes[b.event.take(who), b.relation.take(who)]]] = PIECE
     ready = _awake(compiled, b, agents, state, when + stay)
     end: NDArray[Any] = np.minimum(ready, when + compiled.limit[state])
     return end
@@ -386,11 +411,22 @@ def _draw_look(
     """Variants and motions for agents that enter a state, by effort, the more the more excited."""
     look = compiled.looks[state]
     if len(look.motion) == 1:
-        pick = np.zeros(len(agents), np.int64)
+        return (
+            np.full(len(agents), look.variant[0], np.int16),
+            np.full(len(agents), look.motion[0], np.int16),
+        )
+    least = look.excitement.min()
+    edges: NDArray[Any] | list[Any]
+    if (look.excitement == least).all():
+        # Everyone has the same choice.
+        edges = np.cumsum(look.chance)
     else:
-        excitement = np.maximum(columns["excitement"][agents], look.excitement.min())
-        edges = np.where(look.excitement[:, None] <= excitement, look.chance[:, None], 0.0)
-        np.cumsum(edges, axis=0, out=edges)
-        draw = np.minimum(rng.random(len(agents)) * edges[-1], np.nextafter(edges[-1], 0.0))
-        pick = np.minimum((edges <= draw).sum(axis=0), len(look.motion) - 1)
-    return look.variant[pick], look.motion[pick]
+        excitement = np.maximum(columns["excitement"].take(agents), least)
+        edges = [np.where(look.excitement[0] <= excitement, look.chance[0], 0.0)]
+        for from_, chance in zip(look.excitement[1:], look.chance[1:], strict=True):
+            edges.append(edges[-1] + chance * (from_ <= excitement))
+    draw = rng.random(len(agents))
+    draw *= edges[-1]
+    np.minimum(draw, np.nextafter(edges[-1], 0.0), out=draw)
+    pick = np.minimum(_count_passed(edges, draw), len(look.motion) - 1)
+    return look.variant.take(pick), look.motion.take(pick)

@@ -22,8 +22,7 @@ from ..streams.pool import POSE_RATE
 from .compiled import CompiledTable
 from .emotion import shift
 from .events import KINDS, PLACED, Event
-from .machine import piece_end
-from .table import Relation, Response
+from .table import PIECE, Relation, Response
 
 HIT_RADIUS = 1.2
 """Metres from where the ball lands within which it hits."""
@@ -34,8 +33,9 @@ COST_OF_SHYNESS = 0.25
 FERVOUR_COUNTS = 1.05
 """More fervour than this makes nobody go on longer."""
 
-BLOCK = 16384
-"""Agents that are worked on at once: their temporary columns stay in the processor's cache."""
+BLOCK = 32_600
+"""Agents that are worked on at once: few calls, and temporary columns below 128 KiB, so that they
+stay in the processor's cache."""
 
 
 def respond(
@@ -70,19 +70,47 @@ def respond(
     -------
     (K,) int64 ids of those who will react, ascending
     """
+    effect = _Effect(event, compiled)
     groups = _groups(event, team, placement, present)
     moved = [
-        _move(event, agents, relation, compiled, behaviour, emotion, team, tick, rng)
+        _move(effect, agents, relation, behaviour, emotion, team, tick, rng)
         for agents, relation in groups
     ]
     return np.concatenate(moved) if moved else np.zeros(0, np.int64)
 
 
+class _Effect:
+    """What an event does, by relation (R + 1,); the last is of those whom it doesn't concern."""
+
+    def __init__(self, event: Event, compiled: CompiledTable) -> None:
+        kind = KINDS.index(event.kind)
+        responses = [*(compiled.responses.get((kind, k), Response()) for k in Relation), Response()]
+
+        def column(name: str) -> NDArray[np.float32]:
+            return np.array([getattr(response, name) for response in responses], np.float32)
+
+        self.kind = np.int8(kind)
+        self.weight = np.float32(event.weight or 0.0)
+        self.gain = column("gain")
+        self.ticks = column("seconds") * np.float32(POSE_RATE)
+        self.delay = column("delay") * np.float32(POSE_RATE)
+        self.feelings = [(name, column(name)) for name in _FEELINGS if column(name).any()]
+        # Of machines and states: 0 no rule for the event, 1 a robust one, 2 a rapid one.
+        urgency = np.zeros((len(responses), len(compiled.names)), np.int8)
+        urgency[:-1] += compiled.wakes[:, kind].T
+        urgency[:-1] += compiled.wakes_rapidly[:, kind].T
+        self.urgency = urgency
+        self.wakes = [
+            machine
+            for machine in range(len(compiled.starts))
+            if urgency[:, compiled.machine == machine].any()
+        ]
+
+
 def _move(
-    event: Event,
+    effect: _Effect,
     agents: NDArray[np.int64] | slice,
     relation: NDArray[np.int8],
-    compiled: CompiledTable,
     behaviour: Behaviour,
     emotion: Emotion,
     team: Team,
@@ -90,32 +118,32 @@ def _move(
     rng: np.random.Generator,
 ) -> NDArray[np.int64]:
     """`respond` for some of the crowd, of whom `relation` says what the event is to each."""
-    kind = KINDS.index(event.kind)
-    weight = np.float32(event.weight or 0.0)
-    place = relation.astype(np.intp)
-    responses = [*(compiled.responses.get((kind, k), _NOTHING) for k in Relation), _NOTHING]
-    column = {
-        name: np.array(values, np.float32).take(place, mode="clip")
-        for name in _NUMBERS
-        if any(values := [getattr(response, name) for response in responses])
-    }
+    by_relation = _ByRelation(relation)
+    weight = effect.weight
     fervour = team.fervour[agents]
     impact = weight * fervour
     embarrassment = emotion.embarrassment[agents].copy()
-    for feeling in _FEELINGS:
-        if feeling in column:
-            least = -1.0 if feeling == "mood" else 0.0
-            shift(getattr(emotion, feeling), agents, column[feeling] * impact, least)
-    if "gain" not in column:
+    for feeling, shares in effect.feelings:
+        by = by_relation.column(shares)
+        by *= impact
+        shift(getattr(emotion, feeling), agents, by, -1.0 if feeling == "mood" else 0.0)
+    if not effect.gain.any():
         return np.zeros(0, np.int64)
     # The benefit outweighs the threshold of the person, the higher the more embarrassed.
-    fresh = np.float32(1.0) - np.float32(0.5) * emotion.fatigue[agents]
-    benefit = column["gain"] * impact * fresh
+    fresh = np.float32(0.5) * emotion.fatigue[agents]
+    np.subtract(np.float32(1.0), fresh, out=fresh)
+    benefit = by_relation.column(effect.gain)
+    benefit *= impact
+    benefit *= fresh
     threshold = np.float32(1.0) - emotion.susceptibility[agents]
-    moved = benefit > threshold * (embarrassment + np.float32(0.5))
-    lasting = np.minimum(fervour, np.float32(FERVOUR_COUNTS)) * weight * fresh
-    lasting -= np.float32(COST_OF_SHYNESS) * embarrassment
-    lasting *= column.get("seconds", np.float32(0.0)) * np.float32(POSE_RATE)
+    threshold *= embarrassment + np.float32(0.5)
+    moved = benefit > threshold
+    lasting = np.minimum(fervour, np.float32(FERVOUR_COUNTS))
+    lasting *= weight
+    lasting *= fresh
+    embarrassment *= np.float32(COST_OF_SHYNESS)
+    lasting -= embarrassment
+    lasting *= by_relation.column(effect.ticks)
     moved &= lasting >= 1.0
     left = behaviour.stirred_until[agents] - np.int32(tick)
     if (left > 0).any():
@@ -123,66 +151,112 @@ def _move(
         whole = behaviour.stirred_until[agents] - behaviour.stirred_from[agents]
         rest = (left / np.maximum(whole, 1)).clip(0.0, 1.0)
         moved &= benefit >= behaviour.strength[agents] * rest
-    low, high = np.array([response.delay for response in responses], np.float32).T * POSE_RATE
+    low, high = effect.delay.T
     delay = rng.random(len(relation), np.float32)
-    delay *= (high - low).take(place, mode="clip")
-    delay += low.take(place, mode="clip")
+    delay *= by_relation.column(high - low)
+    delay += by_relation.column(low)
     begin = delay.astype(np.int32)
     begin += np.int32(tick + 1)
-    end = np.maximum(lasting.astype(np.int32) + np.int32(tick), begin + np.int32(1))
+    end = lasting.astype(np.int32)
+    end += np.int32(tick)
+    np.maximum(end, begin + np.int32(1), out=end)
+    some = _Some(agents, moved)
     for target, value in (
-        (behaviour.event, np.int8(kind)),
+        (behaviour.event, effect.kind),
         (behaviour.relation, relation),
         (behaviour.impact, weight),
         (behaviour.strength, benefit),
         (behaviour.stirred_from, begin),
         (behaviour.stirred_until, end),
     ):
-        _set(target, agents, moved, value)
-    _wake(compiled, behaviour, kind, agents, place, begin, moved)
-    first = np.flatnonzero(moved)
-    return agents[first] if isinstance(agents, np.ndarray) else first + agents.start
+        some.write(target, value)
+    _wake(effect, behaviour, agents, by_relation, begin, moved)
+    return agents[some.places] if isinstance(agents, np.ndarray) else some.places + agents.start
 
 
-_NOTHING = Response()
 _NOBODY = len(Relation)
 _FEELINGS = ("excitement", "embarrassment", "mood", "fatigue")
-_NUMBERS = ("gain", "seconds", *_FEELINGS)
 
 
-def _set(
-    column: NDArray[Any], agents: NDArray[np.int64] | slice, moved: NDArray[np.bool_], values: Any
-) -> None:
-    """Write values for those of the agents who are moved."""
-    if isinstance(agents, slice):
-        np.copyto(column[agents], values, where=moved, casting="same_kind")
-    else:
-        column[agents[moved]] = values[moved] if isinstance(values, np.ndarray) else values
+class _ByRelation:
+    """Who of some agents is what to an event: columns with one value a relation.
+
+    Most people in a block are the same to an event, so a column is one value and a few others:
+    that is quicker than looking everyone's up.
+    """
+
+    def __init__(self, relation: NDArray[np.int8]) -> None:
+        groups: list[tuple[int, NDArray[np.bool_], int]] = []
+        missing = len(relation)
+        for k in range(_NOBODY + 1):
+            here = relation == k
+            count = int(np.count_nonzero(here))
+            if count:
+                groups.append((k, here, count))
+            missing -= count
+            if not missing:
+                break
+        self.usual = max(groups, key=lambda group: group[2])[0]
+        self.others = [(k, np.flatnonzero(here)) for k, here, _ in groups if k != self.usual]
+        self._count = len(relation)
+
+    def column(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(K,) float32 of one value for each relation."""
+        column = np.full(self._count, values[self.usual], np.float32)
+        for k, places in self.others:
+            column[places] = values[k]
+        return column
+
+
+class _Some:
+    """Those of some agents whom a mask names: `places` (K,) among the agents, and what they get."""
+
+    def __init__(self, agents: NDArray[np.int64] | slice, mask: NDArray[np.bool_]) -> None:
+        self.places = np.flatnonzero(mask)
+        self._agents = agents
+        # Of a block, it is quicker to write everyone and restore the others if those are fewer.
+        self._others = None
+        if isinstance(agents, slice) and 2 * len(self.places) > len(mask):
+            self._others = np.flatnonzero(~mask)
+
+    def write(self, column: NDArray[Any], values: Any) -> None:
+        """Write values, one for all or one for each of the agents, into a column (N,)."""
+        agents = self._agents
+        if self._others is not None:
+            part = column[agents]
+            before = part.take(self._others)
+            part[:] = values
+            part[self._others] = before
+            return
+        chosen = values.take(self.places) if isinstance(values, np.ndarray) else values
+        if isinstance(agents, slice):
+            column[agents][self.places] = chosen
+        else:
+            column[agents[self.places]] = chosen
 
 
 def _wake(
-    compiled: CompiledTable,
+    effect: _Effect,
     behaviour: Behaviour,
-    kind: int,
     agents: NDArray[np.int64] | slice,
-    relation: NDArray[np.intp],
+    relation: _ByRelation,
     begin: NDArray[np.int32],
     moved: NDArray[np.bool_],
 ) -> None:
     """End the stays of those who are moved and have a rule for the event; as `machine.wake`."""
-    urgency = compiled.wakes[:, kind].astype(np.int8) + compiled.wakes_rapidly[:, kind]
-    relations = urgency.shape[1]
-    for machine in range(len(behaviour.state)):
-        if not urgency[compiled.machine == machine].any():
-            continue
-        key = behaviour.state[machine][agents] * np.intp(relations)
-        key += relation
-        how = urgency.ravel().take(key, mode="clip")
+    for machine in effect.wakes:
+        state = behaviour.state[machine][agents]
+        how = effect.urgency[relation.usual].take(state)
+        for k, places in relation.others:
+            how[places] = effect.urgency[k].take(state.take(places))
         until = behaviour.until[machine][agents]
-        end = piece_end(until, begin)
-        np.copyto(end, begin, where=how == 2)
-        np.minimum(end, until, out=end)
-        _set(behaviour.until[machine], agents, moved & (how > 0), end)
+        # What is left of the piece after `begin` is waited for unless a rule is rapid.
+        rest = until - begin
+        rest -= rest // np.int32(PIECE) * np.int32(PIECE)
+        rest *= how == 1
+        rest += begin
+        np.minimum(rest, until, out=rest)
+        _Some(agents, moved & (how > 0)).write(behaviour.until[machine], rest)
 
 
 def _groups(
@@ -206,8 +280,10 @@ def _groups(
         of_side[event.side] = Relation.OWN
     for start in range(0, len(present), BLOCK):
         block = slice(start, min(start + BLOCK, len(present)))
-        relation = of_side[team.side[block]]
-        np.copyto(relation, np.int8(_NOBODY), where=~present[block])
+        # The last side is the neutral one, so -1 is a place in it like any other.
+        relation = of_side.take(team.side[block], mode="wrap")
+        if not present[block].all():
+            relation[~present[block]] = _NOBODY
         yield block, relation
 
 

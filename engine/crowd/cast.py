@@ -114,7 +114,7 @@ def choose_cast(
 def start_cast(
     pool: StreamPool, cast: Cast, capacity: int, history: int, rng: np.random.Generator
 ) -> CastStreams:
-    """Start the streams of a cast; all `capacity` of the pool.
+    """Start the streams of a cast, on `capacity` rows of the pool; the others stay free.
 
     `history` is M, and `rng` is where phases and speeds come from.
     """
@@ -127,7 +127,8 @@ def start_cast(
     own = affordable_streams(capacity, loops, whole, types)
     has_twins = types > 0 and own > 0
     streams = start_streams(pool, cast.loops, own or capacity - whole, rng)
-    kept = np.zeros(capacity, np.bool_)
+    kept = np.ones(len(pool.alive), np.bool_)
+    kept[:capacity] = False
     once_streams, streams = start_once(pool, cast.library, once, streams, history)
     for rows in once_streams.rows.values():
         kept[rows] = True
@@ -136,7 +137,8 @@ def start_cast(
         ways, streams = start_ways(pool, cast.library, plans, streams, history)
         kept[np.concatenate(ways.rows)] = True
     if has_twins:
-        streams = start_twins(pool, streams, np.arange(len(cast.library.names)) >= loops)
+        whole_motions = np.arange(len(cast.library.names)) >= loops
+        streams = start_twins(pool, streams, whole_motions, len(kept) - capacity)
         twins = pool.twins.table[1:, kept]
         kept[twins[twins >= 0]] = True
     return CastStreams(streams, once_streams, ways, kept)

@@ -6,6 +6,8 @@ of the view frustum. Its level follows from how many pixels tall it would be.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +21,47 @@ MESH_PIXELS = (110.0, 42.0, 17.0)
 
 _BLOCK = 8192
 """Agents a matrix product: larger products are spread over threads, which wait for each other."""
+_GROUP = 256
+"""Neighbouring agents that have a common box."""
+
+Ints = NDArray[np.int64]
+
+
+@dataclass(slots=True)
+class Bounds:
+    """Boxes about groups of neighbouring agents: most of a stadium is out of view, so most of it
+    can be left out without looking at each agent.
+
+    Attributes
+    ----------
+    low, high
+        (4, G) float32 least and greatest x, y, z and scale of each group.
+    version
+        Of the placement that they were made from.
+    """
+
+    low: NDArray[np.float32]
+    high: NDArray[np.float32]
+    version: int
+
+    @classmethod
+    def of(cls, placement: Placement) -> Bounds:
+        """Of a crowd."""
+        body = np.concatenate([placement.position, placement.scale[None]])
+        starts = np.arange(0, body.shape[1], _GROUP)
+        return cls(
+            np.minimum.reduceat(body, starts, axis=1),
+            np.maximum.reduceat(body, starts, axis=1),
+            placement.version,
+        )
+
+    def ids(self, rows: NDArray[np.float32], edges: NDArray[np.float32], count: int) -> Ints:
+        """Ids below `count` of the groups that reach beyond the edges of all planes (P, 4)."""
+        rising = np.maximum(rows, 0.0)
+        farthest = rising @ self.high + (rows - rising) @ self.low
+        # A millimetre for rounding.
+        seen = (farthest >= edges[:, None] - 1e-3).all(axis=0)
+        return np.flatnonzero(np.repeat(seen, _GROUP)[:count])
 
 
 def frustum_planes(view_projection: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -66,6 +109,7 @@ def select_detail(
     *,
     levels: bool,
     coarseness: float = 1.0,
+    bounds: Bounds | None = None,
 ) -> None:
     """Sort the agents that are in view by level of detail.
 
@@ -83,30 +127,45 @@ def select_detail(
         Whether distant agents are drawn more coarsely; if not, all are drawn as near ones.
     coarseness
         Factor on `MESH_PIXELS`: 2 draws an agent as coarsely as one half as tall otherwise.
+    bounds
+        Boxes about the agents, for who keeps them from frame to frame; made anew if None.
     """
     planes = frustum_planes(view.projection @ view.view)
     forward = -view.view[2]
     # The sphere's radius is three quarters of a height; its middle is half a height above the feet.
     # So a plane's distance, radius added, is linear in the place and the scale of the agent, and
     # one matrix product gives it for all planes, and the depth with it.
-    body = np.concatenate([placement.position, placement.scale[None]])
     rows = np.zeros((6, 4), np.float32)
     rows[:5, :3], rows[5, :3] = planes[:, :3], forward[:3]
     rows[:5, 3] = height * (0.5 * planes[:, 1] + 0.75)
-    distance = np.empty((6, body.shape[1]), np.float32)
-    for first in range(0, body.shape[1], _BLOCK):
-        block = slice(first, first + _BLOCK)
-        np.matmul(rows, body[:, block], out=distance[:, block])
-    inside = present.copy()
-    for row, plane in zip(distance, planes, strict=False):
-        inside &= row >= -plane[3]
-    agents = np.flatnonzero(inside).astype(np.uint32)
+    edges = -planes[:, 3]
+    bounds = Bounds.of(placement) if bounds is None else bounds
+    near = bounds.ids(rows[:5], edges, len(present))
+    near = near.compress(present.take(near))
+    ids: list[Ints] = [near[:0]]
+    depths: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
+    body = np.empty((4, min(_BLOCK, len(near))), np.float32)
+    for first in range(0, len(near), _BLOCK):
+        some = near[first : first + _BLOCK]
+        for column, values in zip(body, (*placement.position, placement.scale), strict=True):
+            values.take(some, out=column[: len(some)], mode="clip")
+        distance = rows @ body[:, : len(some)]
+        inside = distance[0] >= edges[0]
+        for row, edge in zip(distance[1:5], edges[1:], strict=True):
+            inside &= row >= edge
+        found = np.flatnonzero(inside)
+        ids.append(some.take(found))
+        depths.append(distance[5].take(found))
+    places = np.concatenate(ids)
+    agents = places.astype(np.uint32)
     if not levels:
         detail.agents = (agents, agents[:0], agents[:0], agents[:0])
         return
-    depth = distance[5, agents] + forward[3]
-    pixels = pixel_heights(placement.scale[agents], height, view, depth)
-    level = np.searchsorted(-coarseness * np.array(MESH_PIXELS, np.float32), -pixels)
+    depth = np.concatenate(depths) + forward[3]
+    pixels = pixel_heights(placement.scale.take(places), height, view, depth)
+    level = np.zeros(len(agents), np.int8)
+    for least in np.float32(coarseness) * np.array(MESH_PIXELS, np.float32):
+        level += pixels < least
     detail.agents = tuple(agents[level == number] for number in Level)
 
 

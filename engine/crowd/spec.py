@@ -38,12 +38,13 @@ _WHOLE = {
     "columns": (1, MOST_ROWS),
     "sides": (1, MOST_SIDES),
     "streams": (1, 256),
+    "spare_streams": (0, 256),
     "history": (2, 254),
     "slots": (0, 8192),
     "uniques": (0, 2048),
     "seed": (0, 2**63 - 1),
 }
-_FLAGS = ("rest_idle", "lod")
+_FLAGS = ("rest_idle", "lod", "casting")
 _REAL = {
     "step": (0.3, 10.0),
     "rise": (0.0, 10.0),
@@ -54,6 +55,7 @@ _REAL = {
     "children": (0.0, 1.0),
     "old": (0.0, 1.0),
     "props": (0.0, 1.0),
+    "tint": (0.0, 1.0),
     "ultras": (0.0, 1.0),
     "embarrassment": (0.0, 1.0),
 }
@@ -97,6 +99,8 @@ class CrowdSpec:
         Of the whole crowd: nobody minds being seen at 0, everybody does at 1.
     streams, history
         Animation streams and poses kept of each.
+    spare_streams
+        Further stream rows that are left free for motions of your own.
     slots, uniques
         Agents that can blend from the middle of another blend at once, and motions that are not
         shared, such as live ones.
@@ -107,6 +111,11 @@ class CrowdSpec:
     props
         Share of a side's supporters who have a cap, a scarf or a flag in its colours. They are made
         for the built-in spectator; other characters have none.
+    tint
+        How much of the agents' colours characters take on whose materials don't say what they are,
+        part by part; 0 leaves them as their file has them.
+    casting
+        Whether neighbours who were drawn too much alike swap clothes or motions with others.
     poses
         Whether motions are streamed, or every frame of every clip is baked beforehand.
     offsets
@@ -142,6 +151,7 @@ class CrowdSpec:
     behaviour: str = field(default="sport", metadata=_help("behaviour table: a name or a file"))
     embarrassment: float = field(default=0.25, metadata=_help("of the whole crowd, 0 to 1"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
+    spare_streams: int = field(default=0, metadata=_help("further streams for your own motions"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
     uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))
@@ -149,6 +159,8 @@ class CrowdSpec:
     props: float = field(
         default=0.35, metadata=_help("share of supporters with a cap, a scarf or a flag")
     )
+    tint: float = field(default=1.0, metadata=_help("colours of agents on imported characters"))
+    casting: bool = field(default=True, metadata=_help("keep neighbours from being clones"))
     poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")

@@ -34,7 +34,7 @@ def affordable_streams(rows: int, motions: int, whole: int, types: int) -> int:
 
 
 def start_twins(
-    pool: StreamPool, streams: MotionStreams, whole: NDArray[np.bool_]
+    pool: StreamPool, streams: MotionStreams, whole: NDArray[np.bool_], spare: int = 0
 ) -> MotionStreams:
     """Show motions on the pool's body types, on the rows that are free.
 
@@ -49,10 +49,12 @@ def start_twins(
         Who plays the motions.
     whole
         (K,) bool motions all of whose streams are needed.
+    spare
+        Rows that stay free.
     """
     types = len(pool.twins.types)
     shared = np.where(whole, streams.count, np.minimum(streams.count, 1))
-    left = int(np.count_nonzero(~pool.alive)) - types * int(shared.sum())
+    left = int(np.count_nonzero(~pool.alive)) - spare - types * int(shared.sum())
     if left < 0:
         raise ValueError(f"{len(pool.alive)} streams are too few to show all motions on all bodies")
     while left >= types and (shared < streams.count).any():

@@ -37,7 +37,7 @@ class AgentTables:
         self._agents = agents
         self._versions = [(-1, -1), (-1, -1)]
         self._place = self._texture(3, TextureFormat.RGBA32F)
-        self._looks = self._texture(5, TextureFormat.SRGB8_ALPHA8)
+        self._looks = self._texture(6, TextureFormat.SRGB8_ALPHA8)
 
     def update_place(
         self, placement: Placement, body: Body | None = None, physique: Physique | None = None
@@ -65,10 +65,12 @@ class AgentTables:
         if self._versions[1] == versions:
             return 0
         self._versions[1] = versions
-        table = self._empty(20, np.uint8)
-        parts = ("skin", "hair", "shirt", "trousers", "shoes")
+        table = self._empty(24, np.uint8)
+        parts = ("skin", "hair", "shirt", "trousers", "shoes", "second")
         for number, part in enumerate(parts):
             table[: self._agents, 4 * number : 4 * number + 4] = getattr(appearance, part)
+        # Alpha is the one channel that is not decoded to linear light.
+        table[: self._agents, 23] = appearance.pattern
         return self._write(self._looks, table)
 
     def bind(self, program: Program) -> None:

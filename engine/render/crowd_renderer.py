@@ -79,7 +79,7 @@ class CrowdRenderer:
         """The pass whose programs have the overrides that there are now."""
         if self._skinned is None or self._revision != self.inputs.revision:
             lists = [InstanceList() for _ in range(len(Level) - 1)]
-            made = SkinnedPass(self._character, self.inputs, lists)
+            made = SkinnedPass(self._character, self.inputs, lists, regions=self.inputs.regions)
             if self._skinned is not None:
                 self._skinned.delete()
             self._skinned, self._revision = made, self.inputs.revision

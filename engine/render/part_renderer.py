@@ -8,6 +8,8 @@ they cost nothing.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...components import Attachment, Detail, Level
 from ..assets.character import Character
 from ..gl.buffer import Buffer
@@ -120,7 +122,9 @@ class PartRenderer:
         levels = range(len(Level) - 1)
         character, inputs = self._character, self._inputs
         if self._attachment.follows_body:
-            return SkinnedPass(character, inputs, [InstanceList() for _ in levels]), None
+            own = None if inputs.regions is None else replace(inputs.regions, parted=False)
+            agents = [InstanceList() for _ in levels]
+            return SkinnedPass(character, inputs, agents, regions=own), None
         lists = tuple(HookedList() for _ in levels)
         hooks = HookPass(self._attachment, self._parent, lists)
         return SkinnedPass(character, inputs, lists, frozenset({"HOOKED"})), hooks

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assets.character import Character
+from ..crowd.regions import Regions
 from ..gl.buffer import Buffer
 from ..gl.program import Program
 from ..gl.texture import Texture2D
@@ -76,6 +77,8 @@ class SkinnedPass:
         For each level who is drawn at it; the pass deletes them with itself.
     switches
         Defined in the programs as well.
+    regions
+        Where the parts and the patterns of shirts are; None for neither.
     """
 
     def __init__(
@@ -84,16 +87,23 @@ class SkinnedPass:
         inputs: CrowdInputs,
         lists: Sequence[InstanceList],
         switches: frozenset[str] = frozenset(),
+        regions: Regions | None = None,
     ) -> None:
         self._inputs = inputs
         self._programs: dict[frozenset[str], Program] = {}
+        self._regions = regions
+        if regions is not None:
+            switches |= {"PARTED" if regions.parted else "PATTERNED"}
         meshes = [character.meshes, *character.lower_levels]
         self.lists = tuple(lists)
         self._levels = tuple(
             tuple(
                 self._upload(part, agents, switches | own)
                 for batch in make_batches(
-                    meshes[min(level, len(meshes) - 1)], character.materials, inputs.morphs
+                    meshes[min(level, len(meshes) - 1)],
+                    character.materials,
+                    inputs.morphs,
+                    regions,
                 )
                 for part, own in _parts(batch, inputs.overridden)
             )
@@ -106,6 +116,8 @@ class SkinnedPass:
         for program in self._programs.values():
             frame.apply(program)
             inputs.bind(program, frame.tick, frame.alpha, markers=False)
+            if self._regions is not None:
+                _bind_regions(program, self._regions)
             for level, agents in zip(self._levels, self.lists, strict=True):
                 for batch in level:
                     if batch.program is program and agents.count:
@@ -151,6 +163,16 @@ class SkinnedPass:
             agents.delete()
         for program in self._programs.values():
             program.delete()
+
+
+def _bind_regions(program: Program, regions: Regions) -> None:
+    """What turns a place in the bind pose into heights of the trunk."""
+    scale = 1.0 / regions.trunk
+    across = regions.across * scale
+    program["trunk_across"] = (float(across[0]), float(across[1]), -regions.middle * scale)
+    program["trunk_up"] = (scale, -regions.waist * scale)
+    if regions.parted:
+        program["tint"] = regions.tint
 
 
 def _parts(

@@ -229,7 +229,7 @@ def finish(pool: StreamPool, anim: AgentAnimID, tick: int) -> int:
     """
     done = 0
     for part in range(len(anim.row)):
-        agents = np.flatnonzero(anim.rate[part])
+        agents = np.flatnonzero(anim.rate[part] != 0)
         if not len(agents):
             continue
         at = (part, agents)

@@ -22,6 +22,9 @@ from .blending import blend_weight
 from .displayed import offset_at
 from .pool import StreamPool
 
+_BLOCK = 16384
+"""Agents that are worked on at once: their temporary columns stay in the processor's cache."""
+
 
 class Delivered(NamedTuple):
     """Events of one pose tick and part, ordered by agent.
@@ -76,9 +79,8 @@ def deliver(
     share = blend_weight(begin, duration, float(tick))
     planes, shares = pool.clip_events.planes, pool.clip_events.shares
     table = _by_age(pool, tick, planes[0])
-    everyone = np.arange(anim.row.shape[1])
     special = np.flatnonzero((anim.rate[part] != 0) | (anim.t0[part] == tick))
-    own = [_passed_at_rest(pool, table, anim.row[part], anim.start[part], everyone, special, tick)]
+    own = [_passed_at_rest(pool, table, anim.row[part], anim.start[part], None, special, tick)]
     own += _passed(pool, anim, part, special, tick, 0)
     leaving = fading[share < 1.0]
     moving = np.flatnonzero(transition.rate[part, leaving])
@@ -113,10 +115,10 @@ def deliver(
 
 def _passed_at_rest(
     pool: StreamPool,
-    table: NDArray[np.uint64],
+    table: NDArray[np.bool_],
     row: NDArray[np.int32],
     offset: NDArray[np.float32],
-    agents: NDArray[np.int64],
+    agents: NDArray[np.int64] | None,
     but: NDArray[np.int64],
     tick: int,
 ) -> _Hits:
@@ -124,38 +126,45 @@ def _passed_at_rest(
 
     They pass exactly one pose a tick, ``ceil(o)`` behind the head: one gather.
     """
-    width = table.shape[1]
-    place = np.ceil(offset).astype(np.int32)
-    np.maximum(place, 0, out=place)
-    np.multiply(place, width, out=place)
-    np.add(place, np.minimum(row, width - 1), out=place)
-    # An offset beyond the ring falls on the table's last column, which is empty.
-    index = place.astype(np.intp)
-    hit = np.take(table.ravel() != 0, index, mode="clip")
+    width = np.int32(table.shape[1])
+    hit = np.empty(len(row), np.bool_)
+    for first in range(0, len(row), _BLOCK):
+        block = slice(first, first + _BLOCK)
+        place = np.ceil(offset[block]).astype(np.int32)
+        np.maximum(place, 0, out=place)
+        place *= width
+        place += np.minimum(row[block], width - 1)
+        # An offset beyond the ring falls on the table's last column, which is empty.
+        table.take(place, mode="clip", out=hit[block])
     hit[but] = False
     hits = np.flatnonzero(hit)
-    index = index[hits]
-    age, column = np.divmod(index, width)
+    column = row.take(hits).astype(np.int64)
+    age = np.maximum(np.ceil(offset.take(hits)).astype(np.int64), 0)
     # Everyone on a stream sees its first pose when it comes.
     age[pool.valid[column] == 1] = 0
-    pose = pool.clip_events.shares.pose(tick - age, column, 0)
-    return _Hits(agents[hits], np.take(table.ravel(), index), pose)
+    events = pool.clip_events
+    plane = events.planes[0]
+    bits = plane[(tick - age) % len(plane), column]
+    who = hits if agents is None else agents.take(hits)
+    return _Hits(who, bits, events.shares.pose(tick - age, column, 0))
 
 
-def _by_age(pool: StreamPool, tick: int, plane: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """(capacity, R + 1): bits of the pose of each age that a resting agent reaches at `tick`.
+def _by_age(pool: StreamPool, tick: int, plane: NDArray[np.uint64]) -> NDArray[np.bool_]:
+    """(capacity, R + 1): whether the pose of each age that a resting agent reaches has bits.
 
     While a history fills up, agents farther behind than it reaches wait at its first pose: they all
     got that pose's events when it came, and don't get them again when they leave it.
     """
     capacity, rows = plane.shape
     age = np.arange(capacity)
-    table = np.zeros((capacity, rows + 1), np.uint64)
+    table = np.zeros((capacity, rows + 1), np.bool_)
     moves = pool.head == tick
-    reached = (age[:, None] <= pool.valid - 2) & moves
-    np.multiply(plane[(tick - age) % capacity], reached, out=table[:, :rows])
+    # Streams that rest reach nothing.
+    oldest = np.where(moves, pool.valid - 2, -1)
+    tagged = plane != 0
+    np.logical_and(tagged[(tick - age) % capacity], age[:, None] <= oldest, out=table[:, :rows])
     starts = np.flatnonzero(moves & (pool.valid == 1))
-    table[:, starts] = plane[tick % capacity, starts]
+    table[:, starts] = tagged[tick % capacity, starts]
     return table
 
 

@@ -145,10 +145,10 @@ class BlendLadder:
         self._tick = tick
         self.counts.tick = BlendCounts()
         end_finished(self.anim, self.transition, tick, self.slots)
-        for part in range(len(self.transition.next_row)):
-            agents = np.flatnonzero(self.transition.next_row[part] >= 0)
-            if len(agents):
-                self._answer(part, agents, tick, rng)
+        for part, wanted in enumerate(self.transition.next_row):
+            # Mostly nobody wants anything, and a maximum is quicker than a mask.
+            if wanted.max(initial=-1) >= 0:
+                self._answer(part, np.flatnonzero(wanted >= 0), tick, rng)
 
     def _answer(
         self, part: int, agents: NDArray[np.int64], tick: int, rng: np.random.Generator

@@ -42,7 +42,7 @@ class Twins:
         Row 0 is the streams themselves.
     """
 
-    __slots__ = ("_bones", "_refit", "base", "kind", "table", "types")
+    __slots__ = ("_bones", "_flesh", "_shift", "base", "kind", "table", "types")
 
     def __init__(self, skeleton: Skeleton, types: Sequence[BodyType], rows: int) -> None:
         self.types = tuple(types)
@@ -56,12 +56,9 @@ class Twins:
         self._bones = np.stack(
             [np.ones(skeleton.joint_count, np.float32), *(kind.bones for kind in self.types)]
         )
-        self._refit = np.stack(
-            [
-                np.tile(np.eye(4, dtype=np.float32), (skeleton.joint_count, 1, 1)),
-                *(kind.refit(skeleton) for kind in self.types),
-            ]
-        )
+        own = np.tile(np.eye(4, dtype=np.float32), (skeleton.joint_count, 1, 1))
+        refit = np.stack([own, *(kind.refit(skeleton) for kind in self.types)])
+        self._flesh, self._shift = refit[:, :, 0, 0], refit[:, :, :3, 3]
 
     def __len__(self) -> int:
         """How many twins there are."""
@@ -128,5 +125,13 @@ class Twins:
     def fit_palettes(
         self, palettes: NDArray[np.float32], rows: NDArray[np.int64], kind: NDArray[np.uint8]
     ) -> None:
-        """Turn rows (n,) of palettes (R, J, 3, 4) from the character's bind pose, in place."""
-        palettes[rows] = palettes[rows] @ self._refit[kind]
+        """Turn rows (n,) of palettes (R, J, 3, 4) from the character's bind pose, in place.
+
+        The product with `BodyType.refit`, which is a uniform scale and a shift.
+        """
+        fitted = palettes[rows]
+        shift = self._shift[kind]
+        for axis in range(3):
+            fitted[..., 3] += fitted[..., axis] * shift[:, :, None, axis]
+        fitted[..., :3] *= self._flesh[kind][:, :, None, None]
+        palettes[rows] = fitted

@@ -135,3 +135,16 @@ def test_impossible_sizes_are_refused(
 ) -> None:
     assert main(["bench", *words]) == 1
     assert capsys.readouterr().err.startswith("tifo: ")
+
+
+def test_variety(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("variety", "--agents", "900", "--streams", "64", "--history", "30")
+    assert main(["bench", *words, "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    drawn, cast = result["moments"]["as drawn"], result["moments"]["cast"]
+    assert cast["pairs"] == drawn["pairs"] > 5000
+    assert cast["score"] < drawn["score"]
+    assert cast["same_both"] == 0.0
+    assert "3 s after a goal" in result["moments"]
+    assert main(["bench", *words]) == 0
+    assert "within 3 seats" in capsys.readouterr().out

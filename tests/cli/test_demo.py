@@ -86,3 +86,14 @@ def test_headless_run_writes_a_picture_and_a_clip(
     assert (frames[0].width, frames[0].height) == (160, 90)
     assert len(frames) >= 6
     assert str(picture) in capsys.readouterr().err.replace("\n", "")
+
+
+def test_the_lab_is_a_scene_of_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    parser = build_parser()
+    assert parser.parse_args(["demo"]).scene == "stadium"
+    assert parser.parse_args(["demo", "--scene", "lab"]).scene == "lab"
+    with pytest.raises(SystemExit):
+        parser.parse_args(["demo", "--help"])
+    assert "--scene {stadium,lab}" in capsys.readouterr().out
+    assert main(["demo", "--scene", "lab", "--headless", "--character", "x.glb"]) != 0
+    assert "the lab shows the built-in spectator" in capsys.readouterr().err

@@ -120,3 +120,11 @@ def test_no_such_display_is_one_sentence(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert "Traceback" not in done.stderr
     assert done.stderr.strip().splitlines()[-1].startswith("tifo: ")
+
+
+def test_the_lab_in_a_window(display: str, tmp_path: Path) -> None:
+    picture = tmp_path / "lab.png"
+    words = ("demo", "--scene", "lab", "--size", "480x270", "--seconds", "1.5")
+    done = run(display, "-m", "tifo", *words, "--screenshot", str(picture))
+    assert done.returncode == 0, done.stderr
+    assert picture.stat().st_size > 10_000

@@ -58,6 +58,8 @@ def test_names_that_the_page_gives_exist() -> None:
     here = re.findall(r"^\|[^|]*\|([^|]*)\|$", PAGE, re.MULTILINE)
     words = set(re.findall(r"`(?:tree\.)?([a-z_]{4,})", " ".join(here)))
     known = {name for cls in (Node3D, tifo.SceneTree, tifo.Tween) for name in dir(cls)}
+    known |= {name for node in tifo.nodes.__all__ for name in dir(getattr(tifo.nodes, node))}
+    known |= {"parameters", "playback", "tifo"}
     known |= {*tifo.__all__, "input", "input_map", "autoloads", "choices", "group", "changed"}
     known |= {"binds", "deferred", "persist", "node", "await", "async", "from", "from_"}
     assert words <= known, words - known

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tifo.engine.crowd.spec import CrowdSpec
 from tifo.engine.streams import Stream
 from tifo.systems.crowd import Crowd
 from tifo.systems.simulation import Simulation
@@ -77,3 +78,24 @@ def test_wrong_requests_are_named(simulate: MakeSimulation) -> None:
     baked = simulate(poses="baked").crowd
     with pytest.raises(ValueError, match="baked and has no overlays"):
         baked.clear_overlay(0)
+
+
+def test_clip_events_of_an_overlay_carry_its_weight() -> None:
+    simulation = Simulation(CrowdSpec(layout="stand", rows=4, columns=5, streams=64, props=0.0))
+    crowd = simulation.crowd
+    crowd.guide([5], motion="stand_idle", seconds=60.0)
+    heard: list[tuple[int, float]] = []
+    crowd.on_clip_event(
+        "clap_contact",
+        lambda ids, weights: heard.extend(zip(ids.tolist(), weights.tolist(), strict=True)),
+    )
+    simulation.run(seconds=4.0)
+    assert not any(agent == 5 for agent, _ in heard[-20:])
+    heard.clear()
+    crowd.overlay([5], stream(crowd, "clap"), "arms", weight=0.5, duration=0.0)
+    simulation.run(seconds=2.0)
+    mine = [weight for agent, weight in heard if agent == 5]
+    # About 3.3 claps a second, however fast the stream plays.
+    assert 5 <= len(mine) <= 8
+    assert set(mine) == {0.5}
+    simulation.close()

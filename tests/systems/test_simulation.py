@@ -137,6 +137,28 @@ def test_culling_follows_the_camera(simulate: MakeSimulation) -> None:
         assert len(esper.get_components(Detail, Seat)) == 1
 
 
+def test_agents_that_were_moved_are_in_view_where_they_are_now(simulate: MakeSimulation) -> None:
+    simulation = simulate(occupancy=1.0)
+    crowd = simulation.crowd
+    eye = crowd.placement.position.mean(axis=1) + np.array([0.0, 2.0, 30.0])
+    view, projection = np.eye(4, dtype=np.float32), np.zeros((4, 4), np.float32)
+    view[:3, 3] = -eye
+    projection[[0, 1, 2, 3], [0, 1, 2, 2]] = 1.0, 1.0, -1.0, -1.0
+    projection[2, 3] = -0.2
+    simulation.look(view, projection, 720)
+    simulation.advance(1 / 60)
+    assert sum(map(len, crowd.detail.agents)) > 200
+    seats = crowd.placement.position
+    crowd.placement.position = seats + np.array([[0.0], [0.0], [100.0]], np.float32)
+    crowd.placement.version += 1
+    simulation.advance(1 / 60)
+    assert sum(map(len, crowd.detail.agents)) == 0
+    crowd.placement.position = seats
+    crowd.placement.version += 1
+    simulation.advance(1 / 60)
+    assert sum(map(len, crowd.detail.agents)) > 200
+
+
 def test_without_levels_of_detail_everyone_in_view_is_near(simulate: MakeSimulation) -> None:
     near = simulate(lod=False)
     _look(near, eye=(14.0, 10.0, 200.0))

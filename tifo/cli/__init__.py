@@ -17,6 +17,7 @@ from ..engine.errors import TifoError
 _COMMANDS = {
     "demo": "play the stadium demo, or render it to a picture and a clip",
     "bench": "measure how fast it runs here",
+    "export": "write spectators to a glTF or USD file for Blender, Maya and others",
     "inspect": "say what is in a glTF or BVH file",
     "doctor": "check graphics, drivers and dependencies, and say what to fix",
 }

@@ -5,6 +5,7 @@ evaluate: all streams for one pose tick (sampling, kinematics, palettes, store);
 tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
 memory: what poses and clips take, streamed and baked, and what a tick copies.
+variety: how alike neighbours look and move, before and after casting.
 scripting: a frame of many nodes with `_process`, and emissions of a signal.
 behaviour: applause, rhythm, waves, emotions and parties: what comes out of the models beside what
   is published of people, and what a tick of them costs; with --plot, curves as a picture.
@@ -19,7 +20,7 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame", "memory", "behaviour", "scripting")
+BENCHMARKS = ("evaluate", "tick", "frame", "memory", "variety", "behaviour", "scripting")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -112,6 +113,12 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
         def measure() -> dict[str, Any]:
             return behaviour(agents=options.agents, runs=options.runs or 200, plot=options.plot)
 
+    elif options.benchmark == "variety":
+        from ..benchmarks.variety import variety
+
+        def measure() -> dict[str, Any]:
+            return variety(agents=options.agents, **common)
+
     else:
         from ..benchmarks.frame import frame
 
@@ -133,6 +140,9 @@ def _report(console: Any, result: dict[str, Any]) -> None:
     console.print(f"[bold]{result['benchmark']}[/]: {sizes}")
     if result["benchmark"] == "memory":
         _report_memory(console, result)
+        return
+    if result["benchmark"] == "variety":
+        _report_variety(console, result)
         return
     table = Table("", "median ms", "10 %", "90 %", "lowest", "runs")
     for column in table.columns[1:]:
@@ -206,6 +216,23 @@ def _report_figures(console: Any, figures: list[dict[str, str]]) -> None:
     for figure in figures:
         table.add_row(figure["name"], figure["measured"], figure["published"])
     console.print(table)
+
+
+def _report_variety(console: Any, result: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    columns = ("clone score", "worst", "found", "same look", "same motion", "both")
+    table = Table("", *columns)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, figures in result["moments"].items():
+        shares = (f"{figures[key]:.4%}" for key in ("same_look", "same_motion", "same_both"))
+        score, worst = f"{figures['score']:.5f}", f"{figures['worst']:.3f}"
+        table.add_row(name, score, worst, f"{figures['found']:.0f}", *shares)
+    console.print(table)
+    pairs = next(iter(result["moments"].values()))["pairs"]
+    console.print(f"{pairs:,.0f} pairs of neighbours within 3 seats; shares are of these")
+    _report_environment(console, result)
 
 
 def _report_environment(console: Any, result: dict[str, Any]) -> None:

@@ -1,5 +1,7 @@
 """Play the stadium demo in a window; without a display, render a picture and a clip.
 
+``--scene lab`` shows each feature of the animation on a few people, with captions.
+
 Keys: G and H goals of the home and the away side, B or a click the ball into the crowd where the
 mouse points, 1 2 3 cameras, C orbit or fly, WASD QE move, drag and scroll look, F fullscreen,
 V vsync, P pause, F12 screenshot, F1 help, Esc quit.
@@ -29,6 +31,7 @@ _FROM_SPEC = (
     "history",
     "slots",
     "props",
+    "tint",
     "poses",
     "offsets",
     "seed",
@@ -38,26 +41,7 @@ _FROM_SPEC = (
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``tifo demo``."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    texts = {field.name: field.metadata["help"] for field in fields(CrowdSpec)}
-    what = parser.add_argument_group("the stadium and its crowd")
-    what.add_argument("--spec", metavar="FILE", help="crowd spec in TOML; options override it")
-    what.add_argument("--character", metavar="FILE", help=texts["character"] + " (.glb .gltf .bvh)")
-    what.add_argument("--motions", metavar="FILE", nargs="+", help=texts["motions"])
-    what.add_argument(
-        "--scale",
-        type=float,
-        metavar="METRES",
-        help="metres a unit of BVH files, guessed if absent",
-    )
-    kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float}
-    kinds.update({"embarrassment": float, "children": float, "old": float})
-    kinds.update({"poses": str, "offsets": str, "behaviour": str})
-    for name in _FROM_SPEC:
-        kind = kinds.get(name, int)
-        what.add_argument(
-            f"--{name}", type=kind, metavar=_metavar(kind), help=texts[name], default=None
-        )
-    what.add_argument("--lod", choices=("on", "off"), help=texts["lod"])
+    add_crowd_arguments(parser)
     how = parser.add_argument_group("the picture")
     how.add_argument("--size", default="1280x720", metavar="WxH", help="pixels, 1280x720 if absent")
     how.add_argument(
@@ -72,6 +56,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     how.add_argument("--events", metavar="TOML", help="file with what happens, and when")
     how.add_argument("--screenshot", metavar="PNG", help="write the last picture")
     how.add_argument("--record", metavar="MP4", help="write a clip")
+
+
+def add_crowd_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that `spec_from` reads."""
+    texts = {field.name: field.metadata["help"] for field in fields(CrowdSpec)}
+    parser.add_argument(
+        "--scene",
+        choices=("stadium", "lab"),
+        default="stadium",
+        help="a match, or each feature of the animation on a few people; of the crowd's options "
+        "below the lab takes only --seed",
+    )
+    what = parser.add_argument_group("the stadium and its crowd")
+    what.add_argument("--spec", metavar="FILE", help="crowd spec in TOML; options override it")
+    what.add_argument("--character", metavar="FILE", help=texts["character"] + " (.glb .gltf .bvh)")
+    what.add_argument("--motions", metavar="FILE", nargs="+", help=texts["motions"])
+    what.add_argument(
+        "--scale",
+        type=float,
+        metavar="METRES",
+        help="metres a unit of BVH files, guessed if absent",
+    )
+    kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float, "tint": float}
+    kinds.update({"embarrassment": float, "children": float, "old": float})
+    kinds.update({"poses": str, "offsets": str, "behaviour": str})
+    for name in _FROM_SPEC:
+        kind = kinds.get(name, int)
+        what.add_argument(
+            f"--{name}", type=kind, metavar=_metavar(kind), help=texts[name], default=None
+        )
+    what.add_argument("--lod", choices=("on", "off"), help=texts["lod"])
 
 
 def run(options: argparse.Namespace) -> int:
@@ -89,6 +104,7 @@ def run(options: argparse.Namespace) -> int:
         events=options.events,
         fullscreen=options.fullscreen,
         vsync=not options.no_vsync,
+        scene=options.scene,
     )
     return play(show, headless=options.headless)
 

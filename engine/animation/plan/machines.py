@@ -155,6 +155,15 @@ def _enter(tables: Tables, nodes: Ints, target: Ints) -> NDArray[np.bool_]:
     return anew
 
 
+def enter_state(tables: Tables, nodes: Ints, target: Ints) -> None:
+    """Put machines into states at once: they start anew, and nothing blends or is travelled to."""
+    columns = tables.nodes
+    columns["goal"][nodes] = columns["source"][nodes] = -1
+    columns["state"][nodes] = target
+    columns["time"][nodes] = 0.0
+    tables.restart(tables.subtrees(tables.child(nodes, target))[0])
+
+
 def _synchronise(tables: Tables, nodes: Ints, phase: NDArray[np.float64]) -> None:
     """Put all clips of the machines' current states to some phases."""
     columns = tables.nodes

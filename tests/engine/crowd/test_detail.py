@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tifo.components import Detail, Level, Placement, View
 from tifo.engine.crowd.detail import (
     MESH_PIXELS,
+    Bounds,
     frustum_planes,
     pixel_heights,
     select_detail,
@@ -95,6 +96,29 @@ def test_agents_in_view_are_those_whose_sphere_touches_the_frustum(
     assert (found[present & (margin > 1e-3)] == 1).all()
     assert (found[margin < -1e-3] == 0).all()
     assert (found[~present] == 0).all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(yaw=ANGLES, pitch=st.floats(-1.5, 1.5), fov=st.floats(0.2, 2.0), seed=st.integers(0, 2**32))
+def test_groups_that_are_left_out_by_their_boxes_have_nobody_in_view(
+    yaw: float, pitch: float, fov: float, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    placement = _placement(rng, 1100, 1.0)
+    # Neighbours sit together, as in a section.
+    placement.position += np.repeat(rng.uniform(-40, 40, (3, 22)), 50, axis=1).astype(np.float32)
+    present = rng.random(1100) < 0.8
+    view = _camera(rng.uniform(-30, 30, 3), yaw, pitch, fov)
+    detail = Detail()
+    bounds = Bounds.of(placement)
+    select_detail(detail, placement, present, HEIGHT, view, levels=False, bounds=bounds)
+    margin = _margin(view, placement, HEIGHT)
+    found = np.zeros(1100, bool)
+    found[detail.agents[0]] = True
+    assert (np.diff(detail.agents[0].astype(int)) > 0).all()
+    assert found[present & (margin > 1e-3)].all()
+    assert not found[margin < -1e-3].any()
+    assert not found[~present].any()
 
 
 @settings(max_examples=30, deadline=None)

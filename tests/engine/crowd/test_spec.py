@@ -38,7 +38,10 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "children": st.floats(0.0, 0.5),
     "old": st.floats(0.0, 0.5),
     "props": st.floats(0.0, 1.0),
+    "tint": st.floats(0.0, 1.0),
+    "casting": st.booleans(),
     "streams": st.integers(1, 256),
+    "spare_streams": st.integers(0, 256),
     "history": st.integers(2, 254),
     "slots": st.integers(0, 8192),
     "uniques": st.integers(0, 2048),
@@ -213,3 +216,11 @@ def test_unreadable_files(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes(b'character = "M\xfcnchen.glb"')
     with pytest.raises(AssetError, match="byte 14: the file is not UTF-8"):
         CrowdSpec.from_toml(tmp_path / "latin.toml")
+
+
+def test_spare_streams_leave_streams_to_the_crowd() -> None:
+    assert CrowdSpec(streams=20, spare_streams=19).spare_streams == 19
+    with pytest.raises(ValueError, match="spare_streams must be less than streams, not 20 of 20"):
+        CrowdSpec(streams=20, spare_streams=20)
+    with pytest.raises(ValueError, match="spare_streams must be a whole number from 0 to 255"):
+        CrowdSpec(spare_streams=-1)

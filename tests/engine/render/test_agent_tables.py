@@ -88,8 +88,8 @@ def test_changes_arrive_with_the_version(crowd: Any, factories: ModuleType) -> N
     crowd.placement.version += 1
     crowd.appearance.version += 1
     copied = crowd.update(0)
-    # Whole rows of 256 agents: 48 bytes of place and 20 of colours each, and one stream.
-    assert copied == 258 * 256 * (48 + 20) + 16
+    # Whole rows of 256 agents: 48 bytes of place and 24 of colours each, and one stream.
+    assert copied == 258 * 256 * (48 + 24) + 16
     (points,) = crowd.skinned(probe(factories), [last], 0, 0.0)
     np.testing.assert_allclose(points[0], [1, 2, 3], rtol=0, atol=1e-6)
     (tints,) = crowd.skinned(probe(factories), [last], 0, 0.0, output="f_tint", surface=2)

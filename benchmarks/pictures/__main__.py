@@ -1,0 +1,44 @@
+"""Write all pictures of docs/, or those that are named.
+
+Run with ``python -m tifo.benchmarks.pictures [--to FOLDER] [NAME ...]``.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from PIL import Image
+
+from .blend_space import draw_blend_space
+from .lab import draw_lab
+from .machine import draw_machine
+from .overlay import draw_overlay
+from .ring import draw_ring
+
+PICTURES: dict[str, Callable[[], Image.Image]] = {
+    "blend_space": draw_blend_space,
+    "state_machine": draw_machine,
+    "ring": draw_ring,
+    "overlay": draw_overlay,
+    "lab": draw_lab,
+}
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Draw and write what the command line asks for."""
+    parser = argparse.ArgumentParser(prog="tifo.benchmarks.pictures", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(PICTURES))
+    parser.add_argument("--to", type=Path, default=Path("docs"), metavar="FOLDER")
+    options = parser.parse_args(words)
+    for name in options.names or PICTURES:
+        if name not in PICTURES:
+            parser.error(f"there is no picture '{name}'; there are {', '.join(PICTURES)}")
+        file = options.to / f"{name}.png"
+        PICTURES[name]().save(file, optimize=True)
+        print(f"wrote {file}")
+
+
+if __name__ == "__main__":
+    main()
