@@ -30,11 +30,11 @@ class Noise:
 
 
 class NoiseSystem(esper.Processor):
-    """Counts who is up; a processor of this game, on the crowds' own columns."""
+    """Counts whom something moves; a processor of this game, on the crowds' own columns."""
 
     def process(self, delta: float) -> None:
-        for _, (noise, motion) in esper.get_components(Noise, tifo.MotionState):
-            busy = float((motion.wanted != motion.innate).mean())
+        for _, (noise, behaviour) in esper.get_components(Noise, tifo.Behaviour):
+            busy = float(behaviour.reacting.mean())
             noise.level += (busy - noise.level) * min(4.0 * delta, 1.0)
 
 

@@ -32,6 +32,7 @@ from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.events import Event, EventQueue
 from ..engine.behaviour.guidance import Guidance
 from ..engine.crowd.agents import agent_ids
+from ..engine.crowd.looks import choose
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.physique import Physique
 from ..engine.crowd.seating import SeatPlan
@@ -134,6 +135,24 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
     def send(self, event: Event) -> None:
         """Let the crowd see an event at the next tick."""
         self.events.send(event)
+
+    def dress(self, agents: int | ArrayLike, **choices: str | None) -> None:
+        """Give agents other bodies, hair, or what else the character has variants of.
+
+        Parameters
+        ----------
+        agents
+            Ids.
+        **choices
+            By group: ``crowd.dress(7, hair="bun", beard=None)``; None is none of it. What there is
+            to choose from is in ``tifo.variant_groups(crowd.character)``.
+
+        Raises
+        ------
+        ValueError
+            For ids out of range, or a group or choice that the character has not.
+        """
+        choose(self.character, self.body, agent_ids(agents, len(self)), choices)
 
     @property
     def party(self) -> Party:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..engine.assets.props import builtin_prop, fits
 from ..engine.crowd.colours import draw_appearance
+from ..engine.crowd.looks import wears
 from .crowd import Crowd
 from .part import Part
 from .parts import add_part
@@ -15,6 +16,8 @@ _STREAM = 0x9109
 
 # Shares of those who have something, from and to: some have a scarf and a cap.
 _KINDS = {"scarf": (0.0, 0.52), "cap": (0.40, 0.84), "flag": (0.80, 1.0)}
+_NO_CAP = ("curly", "bun")
+"""Hair that a cap does not fit over."""
 _STREAMS = {"scarf": 6, "cap": 1, "flag": 8}
 
 
@@ -51,11 +54,15 @@ def give_props(crowd: Crowd, share: float, *, tick: int) -> dict[str, Part]:
     has = (side >= 0) & (rng.random(len(crowd)) < share)
     kind = rng.random(len(crowd))
     colours = draw_appearance(side, rng, fervour=1.0)
+    bare = wears(crowd.character, crowd.body, "hair", _NO_CAP)
     # A shirt's pattern is not that of a flag.
     colours.pattern[:] = 0
     parts = {}
     for name, (first, last) in _KINDS.items():
         prop = builtin_prop(name)
+        agents = has & (kind >= first) & (kind < last)
+        if name == "cap":
+            agents &= ~bare
         parts[name] = add_part(
             crowd,
             name,
@@ -64,7 +71,7 @@ def give_props(crowd: Crowd, share: float, *, tick: int) -> dict[str, Part]:
             hook=prop.hook,
             transform=prop.transform,
             streams=_STREAMS[name],
-            agents=has & (kind >= first) & (kind < last),
+            agents=agents,
             appearance=colours,
         )
     return parts

@@ -42,6 +42,7 @@ from ..engine.crowd.cast import Cast, choose_cast, start_cast
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
 from ..engine.crowd.figure_masks import figure_masks
+from ..engine.crowd.looks import draw_choices
 from ..engine.crowd.motions import Role
 from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
@@ -118,8 +119,10 @@ def spawn_crowd(
     party = form_parties(plan, occupied, mix, rng_company)
     body, size = draw_bodies(
         *(count, spec.children, spec.old, figure.height, rng_bodies),
-        party.is_child if in_families else None,
+        women=spec.women,
+        is_child=party.is_child if in_families else None,
     )
+    body.choice = draw_choices(character, body, rng_bodies)
     team = Team(side, draw_fervour(side, spec, rng_deeds))
     emotion = draw_emotion(team.fervour, spec.embarrassment, rng_deeds)
     table = compile_table(behaviour_table, library)

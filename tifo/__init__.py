@@ -21,7 +21,7 @@ from .components import (
 )
 from .engine.animation import controllers
 from .engine.animation.clip import ClipEvent
-from .engine.assets.character import Character, Material, SkinnedMesh
+from .engine.assets.character import Character, Material, SkinnedMesh, Variant
 from .engine.assets.load import add_motions, load_character
 from .engine.assets.motion_file import Motions, load_motions
 from .engine.assets.props import PROPS, Prop, builtin_prop
@@ -37,6 +37,7 @@ from .engine.assets.retarget import (
     trim_clip,
 )
 from .engine.assets.spectator import builtin_spectator
+from .engine.assets.variants import one_look, variant_groups
 from .engine.behaviour import BehaviourTable, load_table
 from .engine.behaviour.event_file import load_events
 from .engine.behaviour.events import PLACED, BallHit, Event, Goal
@@ -211,6 +212,7 @@ __all__ = [
     "TweenPause",
     "Unique",
     "UniquePool",
+    "Variant",
     "Vector3",
     "View",
     "WindowInput",
@@ -245,6 +247,7 @@ __all__ = [
     "loop_clip",
     "mirror_clip",
     "nodes",
+    "one_look",
     "open_window",
     "pick_seat",
     "remove_part",
@@ -258,6 +261,7 @@ __all__ = [
     "tick_systems",
     "trim_clip",
     "turn_about",
+    "variant_groups",
 ]
 
 _DRAWING = {

@@ -54,6 +54,7 @@ _REAL = {
     "away_share": (0.0, 1.0),
     "children": (0.0, 1.0),
     "old": (0.0, 1.0),
+    "women": (0.0, 1.0),
     "props": (0.0, 1.0),
     "tint": (0.0, 1.0),
     "ultras": (0.0, 1.0),
@@ -95,6 +96,9 @@ class CrowdSpec:
     behaviour
         Table of what people do: ``sport``, ``rock_concert``, ``classical_concert``, ``speech``, or
         a file.
+    women
+        Share of women among the grown-ups and of girls among the children; they have other bodies
+        and hair where the character has such variants.
     embarrassment
         Of the whole crowd: nobody minds being seen at 0, everybody does at 1.
     streams, history
@@ -143,6 +147,7 @@ class CrowdSpec:
     away_share: float = field(default=0.05, metadata=_help("share of the away block, with 2 sides"))
     children: float = field(default=0.06, metadata=_help("share of children"))
     old: float = field(default=0.1, metadata=_help("share of old people"))
+    women: float = field(default=0.4, metadata=_help("share of women, and of girls"))
     fans: Fans = field(
         default="away block", metadata=_help("how sides sit: away block, mixed or blocks")
     )

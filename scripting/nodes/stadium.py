@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import fields
 from typing import Protocol, TypeVar
 
+from ...components.team import MOST_SIDES
 from ...engine.behaviour.events import Event
+from ...engine.behaviour.table_file import TABLES
 from ...engine.crowd.bowl import MAX_SEATS
-from ...engine.crowd.spec import CrowdSpec, Layout, Poses
+from ...engine.crowd.spec import CrowdSpec, Fans, Layout, Offsets, Parties, Poses
 from ...engine.crowd.stand import MOST_ROWS
 from ...systems.crowd import Crowd as CrowdColumns
 from ...systems.simulation import Simulation
@@ -19,6 +22,9 @@ from ..resources import file_of
 from ..signals import Signal
 
 N = TypeVar("N", bound=Node)
+
+# `Node` has children of another kind.
+_RENAMED = {"children": "child_share", "old": "old_share"}
 
 
 class TickListener(Protocol):
@@ -49,19 +55,38 @@ class Stadium(Node3D):
     )
     rows: int = export(default=10, range=(1, MOST_ROWS), group="Crowd", changed="_spec_changed")
     columns: int = export(default=20, range=(1, MOST_ROWS), group="Crowd", changed="_spec_changed")
+    step: float = export(default=1.5, range=(0.3, 10), group="Crowd", changed="_spec_changed")
+    rise: float = export(default=2.0, range=(0, 10), group="Crowd", changed="_spec_changed")
+    depth: float = export(default=2.0, range=(0.3, 10), group="Crowd", changed="_spec_changed")
     occupancy: float = export(default=0.96, range=(0, 1), group="Crowd", changed="_spec_changed")
     occupied: tuple[str, ...] = export(default=(), group="Crowd", changed="_spec_changed")
     empty: tuple[str, ...] = export(default=(), group="Crowd", changed="_spec_changed")
-    sides: int = export(default=2, range=(1, 2), group="Crowd", changed="_spec_changed")
+    sides: int = export(default=2, range=(1, MOST_SIDES), group="Crowd", changed="_spec_changed")
     neutrals: float = export(default=0.03, range=(0, 1), group="Crowd", changed="_spec_changed")
     away_share: float = export(default=0.05, range=(0, 1), group="Crowd", changed="_spec_changed")
+    fans: Fans = export(default="away block", group="Crowd", changed="_spec_changed")
+    ultras: float = export(default=0.05, range=(0, 1), group="Crowd", changed="_spec_changed")
     child_share: float = export(default=0.06, range=(0, 1), group="Crowd", changed="_spec_changed")
     old_share: float = export(default=0.1, range=(0, 1), group="Crowd", changed="_spec_changed")
+    women: float = export(default=0.4, range=(0, 1), group="Crowd", changed="_spec_changed")
+    parties: Parties = export(default="football", group="Crowd", changed="_spec_changed")
+    behaviour: str = export(default="sport", group="Crowd", changed="_spec_changed")
+    embarrassment: float = export(
+        default=0.25, range=(0, 1), group="Crowd", changed="_spec_changed"
+    )
+    props: float = export(default=0.35, range=(0, 1), group="Crowd", changed="_spec_changed")
+    tint: float = export(default=1.0, range=(0, 1), group="Crowd", changed="_spec_changed")
+    casting: bool = export(default=True, group="Crowd", changed="_spec_changed")
     streams: int = export(default=256, range=(1, 256), group="Crowd", changed="_spec_changed")
     spare_streams: int = export(default=16, range=(0, 256), group="Crowd", changed="_spec_changed")
     history: int = export(default=60, range=(2, 254), group="Crowd", changed="_spec_changed")
+    slots: int = export(default=800, range=(0, 8192), group="Crowd", changed="_spec_changed")
+    uniques: int = export(default=64, range=(0, 2048), group="Crowd", changed="_spec_changed")
+    rest_idle: bool = export(default=False, group="Crowd", changed="_spec_changed")
     poses: Poses = export(default="streams", group="Crowd", changed="_spec_changed")
+    offsets: Offsets = export(default="normal", group="Crowd", changed="_spec_changed")
     seed: int = export(default=1, range=(0, 2**63 - 1), group="Crowd", changed="_spec_changed")
+    lod: bool = export(default=True, group="Crowd", changed="_spec_changed")
     character: str = export(default="", group="Crowd", changed="_spec_changed")
     motions: tuple[str, ...] = export(default=(), group="Crowd", changed="_spec_changed")
 
@@ -79,27 +104,14 @@ class Stadium(Node3D):
         ValueError
             If they contradict each other.
         """
-        return CrowdSpec(
-            layout=self.layout,
-            seats=self.seats,
-            rows=self.rows,
-            columns=self.columns,
-            occupancy=self.occupancy,
-            occupied=self.occupied,
-            empty=self.empty,
-            sides=self.sides,
-            neutrals=self.neutrals,
-            away_share=self.away_share,
-            children=self.child_share,
-            old=self.old_share,
-            streams=self.streams,
-            spare_streams=self.spare_streams,
-            history=self.history,
-            poses=self.poses,
-            seed=self.seed,
-            character=_file(self.character),
-            motions=tuple(_file(motion) for motion in self.motions),
-        )
+        values = {
+            field.name: getattr(self, _RENAMED.get(field.name, field.name))
+            for field in fields(CrowdSpec)
+        }
+        values["character"] = _file(self.character)
+        values["behaviour"] = _file(self.behaviour)
+        values["motions"] = tuple(_file(motion) for motion in self.motions)
+        return CrowdSpec(**values)
 
     @property
     def simulation(self) -> Simulation:
@@ -126,7 +138,9 @@ class Stadium(Node3D):
         self.simulation.send(event)
 
     def _sources(self) -> Iterable[tuple[str, Callable[[], object]]]:
-        return ((path, self._spec_changed) for path in (self.character, *self.motions))
+        table = () if self.behaviour in TABLES else (self.behaviour,)
+        paths = (self.character, *table, *self.motions)
+        return ((path, self._spec_changed) for path in paths)
 
     def _spec_changed(self) -> None:
         if self._simulation is not None:

@@ -288,7 +288,7 @@ def test_a_broken_scene_is_told_with_its_line(
     assert "the root of res://main.toml has another type" in str(errors[1])
 
 
-class Kit(Resource):
+class Strip(Resource):
     """Shared data."""
 
     colour: str = export(default="red")
@@ -298,16 +298,16 @@ class Kit(Resource):
 def test_resources_stay_the_same_objects(
     tree: SceneTree, write: Write, errors: list[ScriptError]
 ) -> None:
-    write("kit.toml", '[resource]\ntype = "Kit"\n\n[exports]\ncolour = "blue"\nstripes = 3\n')
+    write("kit.toml", '[resource]\ntype = "Strip"\n\n[exports]\ncolour = "blue"\nstripes = 3\n')
     kit = load("res://kit.toml")
     reload = HotReload(tree)
-    write("kit.toml", '[resource]\ntype = "Kit"\n\n[exports]\ncolour = "green"\n')
+    write("kit.toml", '[resource]\ntype = "Strip"\n\n[exports]\ncolour = "green"\n')
     assert reload.check() == ["res://kit.toml"]
     assert load("res://kit.toml") is kit
     assert (kit.colour, kit.stripes) == ("green", 0)
-    write("kit.toml", '[resource]\ntype = "Kit"\n\n[exports]\nstripes = 12\n')
+    write("kit.toml", '[resource]\ntype = "Strip"\n\n[exports]\nstripes = 12\n')
     assert reload.check() == []
-    assert "Kit.stripes is 12" in str(errors[0])
+    assert "Strip.stripes is 12" in str(errors[0])
     assert kit.colour == "green"
 
 

@@ -27,6 +27,7 @@ _FROM_SPEC = (
     "embarrassment",
     "children",
     "old",
+    "women",
     "streams",
     "history",
     "slots",
@@ -79,7 +80,7 @@ def add_crowd_arguments(parser: argparse.ArgumentParser) -> None:
         help="metres a unit of BVH files, guessed if absent",
     )
     kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float, "tint": float}
-    kinds.update({"embarrassment": float, "children": float, "old": float})
+    kinds.update({"embarrassment": float, "children": float, "old": float, "women": float})
     kinds.update({"poses": str, "offsets": str, "behaviour": str})
     for name in _FROM_SPEC:
         kind = kinds.get(name, int)

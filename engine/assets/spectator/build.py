@@ -18,7 +18,7 @@ SHIPPED = Path(__file__).with_name("spectator.glb")
 
 
 def build_spectator() -> Character:
-    """Make skeleton, meshes at three levels of detail, and all clips; takes about 20 seconds."""
+    """Make skeleton, meshes at three levels of detail, and all clips; takes about three minutes."""
     skeleton = spectator_skeleton()
     meshes, *lower = spectator_meshes(skeleton)
     return Character(

@@ -37,6 +37,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "away_share": st.floats(0.0, 0.5),
     "children": st.floats(0.0, 0.5),
     "old": st.floats(0.0, 0.5),
+    "women": st.floats(0.0, 1.0),
     "props": st.floats(0.0, 1.0),
     "tint": st.floats(0.0, 1.0),
     "casting": st.booleans(),
@@ -218,9 +219,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
         CrowdSpec.from_toml(tmp_path / "latin.toml")
 
 
-def test_spare_streams_leave_streams_to_the_crowd() -> None:
-    assert CrowdSpec(streams=20, spare_streams=19).spare_streams == 19
-    with pytest.raises(ValueError, match="spare_streams must be less than streams, not 20 of 20"):
-        CrowdSpec(streams=20, spare_streams=20)
-    with pytest.raises(ValueError, match="spare_streams must be a whole number from 0 to 255"):
+def test_spare_streams_come_on_top_of_the_crowds_own() -> None:
+    assert CrowdSpec(streams=20, spare_streams=256).spare_streams == 256
+    with pytest.raises(ValueError, match="spare_streams must be a whole number from 0 to 256"):
         CrowdSpec(spare_streams=-1)
