@@ -64,6 +64,8 @@ class Match:
             x, y, z = (float(value) for value in self.simulation.plan.position[:, seat])
             place, label = (x, y + 1.0, z), self.simulation.plan.label(seat)
         owner = None if kind in SIDELESS or place is not None else side
+        if kind == "goal":
+            place = self.attention.celebration(side)
         event = tifo.Event(kind, owner, place=place)
         self.simulation.send(event)
         self.attention.follow(event)

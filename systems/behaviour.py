@@ -18,8 +18,8 @@ from ..engine.behaviour.machine import step, union
 from ..engine.behaviour.responses import respond
 from ..engine.clock import Clock
 from ..engine.streams.pool import POSE_RATE
+from .gestures import Gestures
 from .query import crowds
-from .talking import Talking
 
 GUIDED_BLEND = 12.0
 """Pose ticks in which an order takes effect or ends."""
@@ -82,9 +82,9 @@ class BehaviourSystem(esper.Processor):
             blend=motion.blend,
         )
         company.listen(table, behaviour, changed, tick)
-        talking = esper.try_component(entity, Talking)
-        if talking is not None and len(changed):
-            talking.update(entity, table, behaviour, changed, self._rng)
+        gestures = esper.try_component(entity, Gestures)
+        if gestures is not None and len(changed):
+            gestures.update(entity, table, behaviour, changed, self._rng)
         guidance = component(Guidance)
         told = guidance.step(tick, behaviour)
         if len(told):

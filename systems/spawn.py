@@ -63,7 +63,7 @@ from ..engine.streams.uniques import UniquePool
 from .behaviour import columns_of
 from .casting import cast_crowd
 from .crowd import Crowd
-from .talking import Talking
+from .gestures import Gestures
 
 STREAMS_FOR_BODIES = 128
 """With fewer streams, variety of motion is worth more than bones of one's own."""
@@ -255,7 +255,7 @@ def _add_streams(
     parts += [streams, uniques, slots, anim, crowd.transition, crowd.ladder]
     parts += [overlays, crowd.overlays]
     parts += [crowd.dilation, crowd.clip_feed, ClapMotion(cast.clips, count)]
-    parts.append(Talking(np.zeros(count, np.bool_)))
+    parts.append(Gestures(crowd.table, count))
     for component in parts:
         esper.add_component(crowd.entity, component)
 

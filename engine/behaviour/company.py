@@ -11,7 +11,8 @@ ask for:
 `neighbour_right`  ... to the right
 `spoken_to`        that member talks
 `seated`           the agent's posture
-`distance`         metres to where the last event with a place happened
+`distance`         metres to where the last event happened; infinite where it had no place
+`player_near`      a player is close: the scorer, or one who comes to the stand
 =================  ==========================================================
 """
 
@@ -58,6 +59,10 @@ USUAL = 0.15
 """Excitement above one's own at rest that is no reason to clap yet."""
 SULKING = -0.25
 """Mood below which nobody claps because of being excited."""
+GREETING_RADIUS = 14.0
+"""Metres up to which people wave to a player or reach out to him."""
+GREETING = 9.0
+"""Seconds that he stays there."""
 _STEP = 1.0 / POSE_RATE
 
 
@@ -112,8 +117,12 @@ class Company:
             "spoken_to": np.zeros(count, np.bool_),
             "seated": np.zeros(count, np.bool_),
             "distance": np.full(count, np.inf, np.float32),
+            "player_near": np.zeros(count, np.bool_),
         }
         self._waving = np.zeros(0, np.int64)
+        self._greeted = np.zeros(0, np.int64)
+        self._greets_until: int | None = None
+        self._arms = -1
 
     @property
     def wave(self) -> MexicanWave:
@@ -136,9 +145,15 @@ class Company:
             and (event.weight or 0.0) >= ENDS_WAVE
         ):
             self._wave.reset()
-        if event.place is not None:
+        if event.place is None:
+            self.signals["distance"][:] = np.inf
+        else:
             distance = distance_to(placement, event.place)
             self.signals["distance"][:] = distance
+            if event.kind in ("goal", "player_close"):
+                friends = (team.side == event.side) | (event.kind == "player_close")
+                self._arms = compiled.machine_number("arms")
+                self._greet(np.flatnonzero((distance <= GREETING_RADIUS) & friends & self._present))
             if event.kind == "mexican_wave":
                 here = np.flatnonzero(self._present)
                 nearest = np.argsort(distance[here], kind="stable")[:WAVE_STARTERS]
@@ -175,6 +190,7 @@ class Company:
             if len(ids):
                 wanted[ids] = value
                 wake(behaviour, 0, ids, tick)
+        self._watch_player(tick, behaviour)
         waving = self.signals["wave_wanted"]
         waving[self._waving] = False
         if self._wave is not None:
@@ -193,12 +209,13 @@ class Company:
         tick: int,
     ) -> None:
         """Let those be spoken to whose neighbours among `changed` began to talk, or no longer."""
-        if len(behaviour.state) < 2 or "talk" not in compiled.head_names:
+        machine = compiled.machine_number("head")
+        if machine < 0 or "talk" not in compiled.head_names:
             return
         others = self.party.nearest[changed]
         some = np.flatnonzero(others >= 0)
         others = others[some].astype(np.int64)
-        value = compiled.head[behaviour.state[1, changed[some]]]
+        value = compiled.head[behaviour.state[machine, changed[some]]]
         talks = value == compiled.head_names.index("talk")
         spoken_to = self.signals["spoken_to"]
         spoken_to[others[~talks]] = False
@@ -206,13 +223,32 @@ class Company:
         new = np.unique(new[~spoken_to[new].astype(np.bool_)])
         if len(new):
             spoken_to[new] = True
-            wake(behaviour, 1, new, tick + 1)
+            wake(behaviour, machine, new, tick + 1)
 
     def columns(self) -> list[NDArray[np.generic]]:
         """What is part of the crowd's state."""
         found: list[NDArray[np.generic]] = [self.applause.state, self.rhythm.phase]
         found += self.signals.values()
         return found if self._wave is None else [*found, self._wave.state]
+
+    def _greet(self, agents: NDArray[np.int64]) -> None:
+        """Let agents see a player close to them, from the next step on."""
+        self.signals["player_near"][self._greeted] = False
+        self._greeted, self._greets_until = agents, None
+        self.signals["player_near"][agents] = True
+
+    def _watch_player(self, tick: int, behaviour: Behaviour) -> None:
+        """The player comes, and is gone after a while."""
+        if not len(self._greeted):
+            return
+        comes = self._greets_until is None
+        if self._greets_until is None:
+            self._greets_until = tick + round(GREETING * POSE_RATE)
+        if (comes or tick >= self._greets_until) and self._arms > 0:
+            wake(behaviour, self._arms, self._greeted, tick, rapid=comes)
+        if tick >= self._greets_until:
+            self.signals["player_near"][self._greeted] = False
+            self._greeted = self._greeted[:0]
 
     def _boil(self, tick: int, emotion: Emotion) -> None:
         """Excitement above what is usual is a reason to clap, and embarrassment one not to.

@@ -125,6 +125,11 @@ class CompiledTable:
     responses: dict[tuple[int, int], Response]
     notes: tuple[str, ...]
 
+    def machine_number(self, name: str) -> int:
+        """Index of a machine; -1 if the table hasn't got it."""
+        machines = self.table.machines
+        return machines.index(name) if name in machines else -1
+
     def number(self, name: str) -> int:
         """Index of a state; ValueError if there is none of that name."""
         self.table.state(name)

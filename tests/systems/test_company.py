@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tifo.components.overlays import NO_MASK
 from tifo.engine.behaviour.events import BallHit, Event, Goal
 from tifo.engine.crowd.spec import CrowdSpec
 from tifo.systems.crowd import Crowd
@@ -324,3 +325,69 @@ def test_equal_seeds_and_events_give_equal_crowds(spectators: Make) -> None:
         simulation.run(seconds=4.0)
         digests.append(simulation.crowd.state_hash())
     assert digests[0] == digests[1] != digests[2]
+
+
+def test_those_near_the_scorer_wave_whatever_they_do(spectators: Make) -> None:
+    simulation = spectators(seed=3)
+    crowd = simulation.crowd
+    assert crowd.overlays is not None
+    x = float(crowd.plan.position[0].mean())
+    front = float(crowd.plan.position[2, crowd.plan.row == 0].mean())
+    place = (x, 1.0, front + 2.0)
+    distance = np.hypot(crowd.plan.position[0] - x, crowd.plan.position[2] - place[2])
+    near, far = distance < 4.0, distance > 16.0
+    simulation.run(seconds=1.0)
+    layers = crowd.overlays.columns.mask[0]
+    assert (layers == NO_MASK).all()
+    simulation.send(Goal(side=0, place=place))
+    simulation.run(seconds=2.5)
+    arms = crowd.overlays.masks.index("arms")
+    assert (layers[near] == arms).mean() > 0.6
+    assert (layers[near] == arms).mean() > (layers == arms).mean()
+    assert (layers[far] == NO_MASK).all()
+    # The body goes its own way below: some sit still, get up, jump or cheer.
+    waving = layers == arms
+    assert len(np.unique(crowd.behaviour.state[0, waving])) >= 3
+    simulation.run(seconds=14.0)
+    assert (layers == NO_MASK).all(), "the player has gone"
+
+
+def test_only_the_own_side_waves_to_a_scorer_and_everybody_to_a_player(spectators: Make) -> None:
+    simulation = spectators(sides=2, fans="mixed", seed=3)
+    crowd = simulation.crowd
+    assert crowd.overlays is not None
+    x, y, z = (float(value) for value in crowd.plan.position[:, len(crowd) // 2])
+    simulation.send(Goal(side=1, place=(x, y + 1.0, z)))
+    simulation.run(seconds=2.5)
+    waving = crowd.overlays.columns.mask[0] != NO_MASK
+    assert set(crowd.team.side[waving]) == {1}
+    simulation.run(seconds=12.0)
+    simulation.send(Event("player_close", place=(x, y + 1.0, z)))
+    simulation.run(seconds=2.5)
+    waving = crowd.overlays.columns.mask[0] != NO_MASK
+    assert set(crowd.team.side[waving]) == {0, 1}
+
+
+def test_a_users_overlay_is_left_alone(spectators: Make) -> None:
+    simulation = spectators(rows=6, columns=10)
+    crowd = simulation.crowd
+    assert crowd.overlays is not None
+    assert crowd.pool is not None
+    crowd.overlay(np.arange(60), crowd.pool.stream(0), "arm_l", duration=0.0)
+    simulation.run(seconds=0.2)
+    x, y, z = (float(value) for value in crowd.plan.position.mean(axis=1))
+    simulation.send(Event("player_close", place=(x, y, z)))
+    simulation.run(seconds=3.0)
+    assert (crowd.overlays.columns.mask[0] == crowd.overlays.masks.index("arm_l")).all()
+
+
+def test_a_goal_without_a_place_has_no_scorer_to_wave_to(spectators: Make) -> None:
+    simulation = spectators(rows=6, columns=10)
+    crowd = simulation.crowd
+    assert crowd.overlays is not None
+    simulation.send(BallHit(place=tuple(float(v) for v in crowd.plan.position.mean(axis=1))))
+    simulation.run(seconds=0.5)
+    simulation.send(Goal(side=0))
+    simulation.run(seconds=2.0)
+    assert np.isinf(crowd.behaviour.signals["distance"]).all()
+    assert (crowd.overlays.columns.mask[0] == NO_MASK).all()

@@ -63,7 +63,7 @@ def test_shipped_tables_are_sound(name: str, factories: ModuleType) -> None:
 
 def test_the_reference_table_is_the_machine_of_the_thesis() -> None:
     table = load_table("sport")
-    assert table.machines == ("body", "head")
+    assert table.machines == ("body", "head", "arms")
     assert table.states[0].name == "start"
     assert _ways(table, "start") - {"struck"} == {"sit"}
     assert {"turn_left", "turn_right", "stand"} <= _ways(table, "sit")
@@ -153,6 +153,11 @@ def test_machines_are_apart() -> None:
     other = GOOD + '\n[states.talk]\nmachine = "head"\n\n[[rules]]\nfrom = "talk"\nto = "sit"\n'
     with pytest.raises(AssetError, match="'talk' and 'sit' are of different machines"):
         table_from_toml(other)
+
+
+def test_machines_have_the_names_of_what_they_move() -> None:
+    with pytest.raises(AssetError, match="machine is 'legs', expected one of: body, head, arms"):
+        table_from_toml(GOOD + '\n[states.stroll]\nmachine = "legs"\n')
 
 
 def test_a_star_is_every_other_state_of_the_machine() -> None:
