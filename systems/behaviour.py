@@ -14,6 +14,7 @@ from ..engine.behaviour.display import motions_to_show
 from ..engine.behaviour.emotion import relax
 from ..engine.behaviour.events import EventQueue
 from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.hugs import Hugs
 from ..engine.behaviour.machine import step, union
 from ..engine.behaviour.responses import respond
 from ..engine.clock import Clock
@@ -57,8 +58,11 @@ class BehaviourSystem(esper.Processor):
 
         emotion, team = component(Emotion), component(Team)
         company = component(Company)
+        hugs: Hugs | None = esper.try_component(entity, Hugs)
         for event in component(EventQueue).take(tick / POSE_RATE):
             company.see(event, table, team, component(Placement))
+            if hugs is not None:
+                hugs.see(event, tick)
             respond(
                 event,
                 table,
@@ -72,6 +76,9 @@ class BehaviourSystem(esper.Processor):
             )
         relax(emotion, tick, behaviour.reacting, contagious=True)
         company.step(tick, emotion, behaviour)
+        if hugs is not None:
+            hugs.turn(table, tick)
+            hugs.step(table, behaviour, motion.busy_until, tick)
         changed = step(
             table,
             behaviour,

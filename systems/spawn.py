@@ -33,6 +33,7 @@ from ..engine.behaviour.display import motions_to_show
 from ..engine.behaviour.emotion import draw_emotion
 from ..engine.behaviour.events import EventQueue
 from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.hugs import Hugs
 from ..engine.behaviour.machine import settle
 from ..engine.behaviour.parties import FOOTBALL, GENERAL_PUBLIC, form_parties
 from ..engine.behaviour.table_file import load_table
@@ -256,6 +257,10 @@ def _add_streams(
     parts += [overlays, crowd.overlays]
     parts += [crowd.dilation, crowd.clip_feed, ClapMotion(cast.clips, count)]
     parts.append(Gestures(crowd.table, count))
+    assert crowd.company is not None
+    hugs = Hugs(crowd.plan, crowd.company.party, crowd.body, crowd.placement, rng)
+    crowd.behaviour.signals.update(hugs.signals)
+    parts.append(hugs)
     for component in parts:
         esper.add_component(crowd.entity, component)
 

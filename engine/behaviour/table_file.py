@@ -217,7 +217,7 @@ class _Reader:
                 self.fail(line, f"clips of variant {number}: {clips!r} is no expression: {error}")
         return Variant(
             clips=clips,
-            effort=self.number(value.get("effort", 1.0), line, "effort", 1e-3),
+            effort=self.number(value.get("effort", 1.0), line, "effort", 1e-6),
             excitement=self.number(value.get("excitement", 0.0), line, "excitement", 0.0, 1.0),
         )
 
@@ -249,7 +249,7 @@ class _Reader:
             yield Rule(
                 origin=origin,
                 target=given["to"],
-                effort=self.number(given.get("effort", 1.0), line("effort"), "effort", 1e-3),
+                effort=self.number(given.get("effort", 1.0), line("effort"), "effort", 1e-6),
                 events=frozenset(events),
                 relations=frozenset(self.names(relations, line("side"), "side", RELATIONS)),
                 calm=event is False,

@@ -21,6 +21,8 @@ SPEED = 1.3
 """Reactions are quicker than the clips, which were made to be looked at."""
 BLEND = 6.0
 """Longest blend into such a motion, pose ticks."""
+MATCHED = ("hug_a", "hug_b")
+"""Clips of two who do something together."""
 JITTER = 2.0
 """Pose ticks by which agents that begin together differ."""
 
@@ -33,9 +35,12 @@ class OnceStreams:
     ----------
     rows
         Stream rows by motion of the library.
+    exact
+        Motions that are entered exactly at the beginning, since two people do them together.
     """
 
     rows: dict[int, NDArray[np.int32]]
+    exact: frozenset[int] = frozenset()
 
     def enter(
         self,
@@ -55,7 +60,8 @@ class OnceStreams:
         for which, rows in self.rows.items():
             k = np.flatnonzero(motion == which)
             if len(k):
-                place = entry_offset(pool, rows, len(k), tick, rng, jitter=JITTER)
+                jitter = 0.0 if which in self.exact else JITTER
+                place = entry_offset(pool, rows, len(k), tick, rng, jitter=jitter)
                 row[k], offset[k] = place.row, place.offset
                 blend[k] = np.minimum(blend[k], BLEND)
 
@@ -114,4 +120,5 @@ def start_once(
         count=np.append(streams.count, np.array(count, np.int32)),
         twins=pool.twins,
     )
-    return OnceStreams(rows), places
+    exact = frozenset(k for k in motions if library.names[k] in MATCHED)
+    return OnceStreams(rows, exact), places

@@ -111,7 +111,7 @@ BROKEN = [
     ("limit = 30", "limit = 0", 10, "limit is 0, expected a number, 1 to"),
     ('"no_such"', '"no_such("', 11, "is no expression"),
     ('clips = "no_such", ', "", 11, "variant 2 has no clips"),
-    ("effort = 2.0", "effort = nan", 11, "effort is nan, expected a number, 0.001 or more"),
+    ("effort = 2.0", "effort = nan", 11, "effort is nan, expected a number, 1e-06 or more"),
     ("effort = 2.0", "effort = -1", 11, "effort is -1"),
     ('from = "sit"', "form = 1", 14, "unknown key 'form'; did you mean from"),
     ('to = "clap"', 'to = "clapp"', 13, "there is no state 'clapp'; states: sit, clap"),
