@@ -20,12 +20,14 @@ from ..components import (
     Dilation,
     Emotion,
     MotionState,
+    Party,
     Placement,
     Seat,
     Team,
     Transition,
 )
 from ..engine.assets.character import Character
+from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.events import Event, EventQueue
 from ..engine.behaviour.guidance import Guidance
@@ -72,6 +74,8 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
         The components that every crowd has.
     emotion, behaviour, table, guidance
         Feelings, states, the behaviour table as it is used, and orders.
+    company
+        Parties, applause, waves, and moods that pass from neighbour to neighbour.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
     overlays
@@ -106,6 +110,7 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
     library: MotionLibrary
     events: EventQueue
     overrides: OverrideSet
+    company: Company
     emotion: Emotion
     behaviour: Behaviour
     table: CompiledTable
@@ -148,6 +153,28 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
             For ids out of range, or a group or choice that the character has not.
         """
         choose(self.character, self.body, agent_ids(agents, len(self)), choices)
+
+    @property
+    def party(self) -> Party:
+        """Who came with whom."""
+        return self.company.party
+
+    def start_wave(self, agents: int | ArrayLike) -> NDArray[np.int64]:
+        """Let agents get up for a Mexican wave, at the next pose tick.
+
+        Whether it runs is up to the others: some thirty people side by side, over a few rows, start
+        one as often as not, and twice as many nearly always.
+
+        Parameters
+        ----------
+        agents
+            An id, ids, or a (N,) boolean mask.
+
+        Returns
+        -------
+        (K,) int64 ids of those who get up: they are there and not up already
+        """
+        return self.company.start_wave(agents)
 
     @property
     def uniques(self) -> UniquePool:
@@ -379,7 +406,7 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
         """Digest of everything that the simulation decided; equal for equal seeds and inputs."""
         digest = hashlib.blake2b(digest_size=16)
         components: list[Any] = [self.motion, self.seat, self.team, self.placement, self.body]
-        components += [self.emotion, self.behaviour]
+        components += [self.emotion, self.behaviour, self.party]
         clips = self.baked[1] if self.baked else None
         overlays = self.overlays.columns if self.overlays else None
         columns = (self.anim, self.transition, overlays, clips)
@@ -391,4 +418,6 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
                 value = getattr(component, column.name)
                 if isinstance(value, np.ndarray):
                     digest.update(np.ascontiguousarray(value).tobytes())
+        for array in self.company.columns():
+            digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()

@@ -11,6 +11,7 @@ class Phase(IntEnum):
     BEHAVIOUR = 70
     TRANSITIONS = 60
     DILATION = 55
+    CLAPS = 53
     CONTROLLERS = 50
     HISTORY = 40
     CLIP_EVENTS = 35

@@ -17,6 +17,7 @@ import numpy as np
 from ..engine.clock import Clock
 from .behaviour import BehaviourSystem
 from .clip_events import ClipEventSystem
+from .contagion import ClapSystem
 from .controllers import ControllerSystem
 from .detail import DetailSystem
 from .dilation import DilationSystem
@@ -88,6 +89,7 @@ def tick_systems(seed: int) -> list[esper.Processor]:
         BehaviourSystem(np.random.default_rng(behaviour)),
         TransitionSystem(np.random.default_rng(transitions)),
         DilationSystem(),
+        ClapSystem(),
         ControllerSystem(),
         HistorySystem(),
         ClipEventSystem(),
@@ -103,6 +105,7 @@ def add_systems(seed: int, *, levels: bool = True) -> None:
         Phase.BEHAVIOUR,
         Phase.TRANSITIONS,
         Phase.DILATION,
+        Phase.CLAPS,
         Phase.CONTROLLERS,
         Phase.HISTORY,
         Phase.CLIP_EVENTS,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import esper
@@ -24,27 +25,31 @@ from ..components import (
 from ..engine.animation.clip import rest_clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
+from ..engine.behaviour.clap_motion import ClapMotion
+from ..engine.behaviour.clip_names import wanted_clips
+from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import compile_table
 from ..engine.behaviour.display import motions_to_show
 from ..engine.behaviour.emotion import draw_emotion
 from ..engine.behaviour.events import EventQueue
 from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.hugs import Hugs
 from ..engine.behaviour.machine import settle
+from ..engine.behaviour.parties import FOOTBALL, GENERAL_PUBLIC, form_parties
 from ..engine.behaviour.table_file import load_table
 from ..engine.crowd.body_types import make_body_types
 from ..engine.crowd.builds import draw_bodies
+from ..engine.crowd.cast import Cast, choose_cast, start_cast
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
 from ..engine.crowd.figure_masks import figure_masks
 from ..engine.crowd.looks import draw_choices
-from ..engine.crowd.motions import Role, sort_motions, start_streams
+from ..engine.crowd.motions import Role
 from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
 from ..engine.crowd.regions import find_regions
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
-from ..engine.crowd.twin_streams import affordable_streams, start_twins
-from ..engine.crowd.ways import Way, add_ways, find_ways, start_ways, without_ways
 from ..engine.overrides import OverrideSet
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.event_feed import ClipEventFeed
@@ -59,9 +64,13 @@ from ..engine.streams.uniques import UniquePool
 from .behaviour import columns_of
 from .casting import cast_crowd
 from .crowd import Crowd
+from .gestures import Gestures
 
 STREAMS_FOR_BODIES = 128
 """With fewer streams, variety of motion is worth more than bones of one's own."""
+MOST_CHILDREN = 0.5
+"""Share of children up to which each comes with an adult."""
+MIXES = {"football": FOOTBALL, "general": GENERAL_PUBLIC}
 SPECTATOR_HEIGHT = 1.75
 """Metres that a character is scaled to, before agents differ."""
 
@@ -86,30 +95,41 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(8)
-    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds, rng_casting = (
-        map(np.random.default_rng, seeds)
-    )
+    seeds = np.random.SeedSequence(spec.seed).spawn(9)
+    rngs = map(np.random.default_rng, seeds)
+    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, *rngs_of_people = rngs
+    rng_bodies, rng_deeds, rng_company, rng_casting = rngs_of_people
     clips = character.clips or (rest_clip(character.skeleton),)
-    # Every motion should have streams of its own, and twins of them where there are body types.
-    rows = spec.streams
-    bodies = spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES
-    library = sort_motions(clips, most=max(rows // (7 if bodies else 2), 1))
-    plans = None
-    if spec.poses == "streams":
-        plans = find_ways(clips, library, rows, spec.history)
-    if plans is not None:
-        library = add_ways(library, plans, len(clips))
     figure = make_figure(character)
+    behaviour_table = load_table(spec.behaviour)
+    bodies = spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES
+    cast = choose_cast(
+        clips,
+        wanted_clips(behaviour_table, [clip.name for clip in clips]),
+        streams=spec.streams,
+        history=spec.history,
+        types=len(make_body_types(character.skeleton, figure)) if bodies else 0,
+        baked=spec.poses == "baked",
+    )
+    library = cast.library
     occupied = occupancy_mask(plan, spec, rng_seats)
     side = assign_sides(plan, spec, rng_sides)
     count = plan.count
-    body, size = draw_bodies(count, spec.children, spec.old, figure.height, rng_bodies, spec.women)
+    in_families = spec.children <= MOST_CHILDREN
+    mix = replace(MIXES[spec.parties], children=spec.children if in_families else 0.0)
+    party = form_parties(plan, occupied, mix, rng_company)
+    body, size = draw_bodies(
+        *(count, spec.children, spec.old, figure.height, rng_bodies),
+        women=spec.women,
+        is_child=party.is_child if in_families else None,
+    )
     body.choice = draw_choices(character, body, rng_bodies)
     team = Team(side, draw_fervour(side, spec, rng_deeds))
     emotion = draw_emotion(team.fervour, spec.embarrassment, rng_deeds)
-    table = compile_table(load_table(spec.behaviour), library)
+    table = compile_table(behaviour_table, library)
     behaviour = Behaviour.allocate(len(table.starts), count)
+    company = Company(plan, occupied, team, emotion, party, rng_company)
+    behaviour.signals.update(company.signals)
     settle(table, behaviour, columns_of(behaviour, emotion, team), rng_deeds)
     guidance = Guidance(count, len(table.names), rng_deeds)
     calm = library.draw(Role.CALM, count, rng_motion)
@@ -132,6 +152,7 @@ def spawn_crowd(
         detail=Detail(),
         library=library,
         events=EventQueue(),
+        company=company,
         overrides=OverrideSet(character.skeleton, count),
         world=str(esper.current_world),
     )
@@ -150,17 +171,17 @@ def spawn_crowd(
         behaviour,
         table,
         guidance,
+        company,
+        party,
         figure,
         find_regions(character, figure, tint=spec.tint),
         character,
     )
-    if plans is not None:
-        clips = (*clips, *(plan.loop for plan in plans))
-    bank = ClipBank(character.skeleton, clips)
+    bank = ClipBank(character.skeleton, cast.clips)
     if spec.poses == "baked":
         _add_baked(crowd, bank, figure, rng_motion)
     else:
-        _add_streams(crowd, bank, figure, plans, offsets or spec.offsets, rng_motion)
+        _add_streams(crowd, bank, figure, cast, offsets or spec.offsets, rng_motion)
     if spec.casting:
         # Offsets that the user gave stay with whom they were given to.
         own = callable(offsets or spec.offsets)
@@ -190,7 +211,7 @@ def _add_streams(
     crowd: Crowd,
     bank: ClipBank,
     figure: Figure,
-    plans: tuple[Way, Way] | None,
+    cast: Cast,
     offsets: OffsetSource,
     rng: np.random.Generator,
 ) -> None:
@@ -205,31 +226,13 @@ def _add_streams(
         slots=spec.slots,
         bodies=make_body_types(crowd.character.skeleton, figure),
     )
-    ways_need = 0 if plans is None else sum(plan.streams(spec.history) for plan in plans)
-    motions = len(crowd.library.names)
-    rows = spec.streams
-    own = 0
-    if spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES and pool.twins.types:
-        own = affordable_streams(rows, motions, ways_need, len(pool.twins.types))
-    parts: list[Any] = [pool]
-    kept = np.zeros(spec.streams + spec.spare_streams, np.bool_)
-    kept[spec.streams :] = True
-    if plans is None:
-        streams = start_streams(pool, crowd.library, own or rows, rng)
-    else:
-        many = own or rows - ways_need
-        streams = start_streams(pool, without_ways(crowd.library), many, rng)
-        ways, streams = start_ways(pool, crowd.library, plans, streams, spec.history)
-        kept[np.concatenate(ways.rows)] = True
-        parts.append(ways)
-    if own:
-        whole = np.zeros(motions, np.bool_)
-        whole[motions if plans is None else motions - len(plans) :] = True
-        streams = start_twins(pool, streams, whole, spec.spare_streams)
-        twins = pool.twins.table[1:, kept]
-        kept[twins[twins >= 0]] = True
+    started = start_cast(pool, cast, spec.streams, spec.history, rng)
+    streams = started.streams
+    parts: list[Any] = [pool, started.once]
+    if started.ways is not None:
+        parts.append(started.ways)
     if spec.rest_idle:
-        parts.append(StreamNeeds(len(kept), always=kept))
+        parts.append(StreamNeeds(len(started.kept), always=started.kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
     # before the first one.
     for tick in range(1 - spec.history, 1):
@@ -252,7 +255,12 @@ def _add_streams(
     crowd.clip_feed = ClipEventFeed(pool.clip_events, crowd.seat.occupied)
     parts += [streams, uniques, slots, anim, crowd.transition, crowd.ladder]
     parts += [overlays, crowd.overlays]
-    parts += [crowd.dilation, crowd.clip_feed]
+    parts += [crowd.dilation, crowd.clip_feed, ClapMotion(cast.clips, count)]
+    parts.append(Gestures(crowd.table, count))
+    assert crowd.company is not None
+    hugs = Hugs(crowd.plan, crowd.company.party, crowd.body, crowd.placement, rng)
+    crowd.behaviour.signals.update(hugs.signals)
+    parts.append(hugs)
     for component in parts:
         esper.add_component(crowd.entity, component)
 

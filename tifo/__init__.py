@@ -39,7 +39,8 @@ from .engine.assets.retarget import (
 from .engine.assets.spectator import builtin_spectator
 from .engine.assets.variants import one_look, variant_groups
 from .engine.behaviour import BehaviourTable, load_table
-from .engine.behaviour.events import BallHit, Event, Goal
+from .engine.behaviour.event_file import load_events
+from .engine.behaviour.events import PLACED, BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
 from .engine.crowd.kits import PATTERNS, Kit
@@ -122,6 +123,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "PATTERNS",
+    "PLACED",
     "PROPS",
     "AdoptedContext",
     "Agent",
@@ -237,6 +239,7 @@ __all__ = [
     "is_instance_valid",
     "load",
     "load_character",
+    "load_events",
     "load_motions",
     "load_scene",
     "load_table",

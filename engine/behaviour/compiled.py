@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +9,12 @@ from numpy.typing import NDArray
 
 from ..crowd.motions import MotionLibrary, Role
 from ..streams.pool import POSE_RATE
+from .clip_names import is_seated, matching, other_form
 from .events import KINDS
 from .table import PIECE, POSTURES, RELATIONS, BehaviourTable, Response, Rule, State, Variant
 
 KEEP = -1
 """A motion or channel value that leaves things as they are."""
-_SEATED = re.compile(r"^sit", re.IGNORECASE)
 _REST = "rest"
 """The value of the arms channel, and the first of each list, that means nothing special."""
 
@@ -89,6 +88,10 @@ class CompiledTable:
         (S, kinds, relations) bool: no rule leads away while such an event moves an agent.
     seated
         (K,) bool of the library's motions.
+    other_form
+        (K,) int16 the same motion in the other posture, or itself.
+    takes_any_posture
+        (S,) bool: a state is shown in the posture that the agent has.
     calm
         For each posture the motions of someone at rest.
     responses
@@ -116,9 +119,16 @@ class CompiledTable:
     wakes_rapidly: NDArray[np.bool_]
     sleeps: NDArray[np.bool_]
     seated: NDArray[np.bool_]
+    other_form: NDArray[np.int16]
+    takes_any_posture: NDArray[np.bool_]
     calm: tuple[NDArray[np.int16], NDArray[np.int16]]
     responses: dict[tuple[int, int], Response]
     notes: tuple[str, ...]
+
+    def machine_number(self, name: str) -> int:
+        """Index of a machine; -1 if the table hasn't got it."""
+        machines = self.table.machines
+        return machines.index(name) if name in machines else -1
 
     def number(self, name: str) -> int:
         """Index of a state; ValueError if there is none of that name."""
@@ -140,7 +150,7 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
     states = table.states
     names = tuple(state.name for state in states)
     index = {name: k for k, name in enumerate(names)}
-    seated = np.array([bool(_SEATED.match(name)) for name in library.names], np.bool_)
+    seated = np.array([is_seated(name) for name in library.names], np.bool_)
     notes: list[str] = []
     looks = tuple(_cast(state, library, seated, notes) for state in states)
     rules = tuple(
@@ -172,6 +182,12 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
         )
         for state in states
     ]
+    is_bridge = np.array(
+        [
+            state.pieces == (1, 1) and state.role is None and bool((look.motion == KEEP).all())
+            for state, look in zip(states, looks, strict=True)
+        ]
+    ) & np.array([state.machine == table.machines[0] for state in states])
     return CompiledTable(
         table=table,
         names=names,
@@ -190,17 +206,13 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
         head=_numbers([state.head for state in states], head),
         arms_names=arms,
         head_names=head,
-        is_bridge=np.array(
-            [
-                state.pieces == (1, 1) and state.role is None and (look.motion == KEEP).all()
-                for state, look in zip(states, looks, strict=True)
-            ]
-        )
-        & np.array([state.machine == table.machines[0] for state in states]),
+        is_bridge=is_bridge,
         wakes=wakes,
         wakes_rapidly=rapid,
         sleeps=~awake,
         seated=seated,
+        other_form=other_form(library.names),
+        takes_any_posture=np.array([state.posture is None for state in states]) & ~is_bridge,
         calm=(_calm(library, seated, True), _calm(library, seated, False)),
         responses={
             (KINDS.index(kind), RELATIONS.index(relation)): response
@@ -252,7 +264,7 @@ def _cast(
     chance: list[float] = []
     excitement: list[float] = []
     for number, one in enumerate(state.variants or (Variant(()),)):
-        found = _matching(one, library)
+        found = matching(one, state, library.names)
         if not found:
             found = [_stand_in(state, number, library, seated)]
             if one.clips:
@@ -269,16 +281,6 @@ def _cast(
         np.array(chance),
         np.array(excitement, np.float32),
     )
-
-
-def _matching(variant: Variant, library: MotionLibrary) -> list[int]:
-    if isinstance(variant.clips, str):
-        words = re.compile(variant.clips, re.IGNORECASE)
-        return [k for k, name in enumerate(library.names) if words.fullmatch(name)]
-    for name in variant.clips:
-        if name in library.names:
-            return [library.names.index(name)]
-    return []
 
 
 def _stand_in(state: State, number: int, library: MotionLibrary, seated: NDArray[np.bool_]) -> int:

@@ -12,8 +12,10 @@ from ...components.team import MOST_SIDES
 KINDS = (
     *("goal", "near_miss", "foul", "card", "referee_decision", "substitution", "corner"),
     *("kick_off", "half_time", "final_whistle", "ball_in_crowd", "anthem", "player_close", "cue"),
+    "mexican_wave",
 )
-"""What can happen; ``cue`` is whatever asks for applause: the end of a song, a point made."""
+"""What can happen; ``cue`` is whatever asks for applause: the end of a song, a point made.
+``mexican_wave``: some fifty people near its place get up for one."""
 
 WEIGHTS = {
     "goal": 1.0,
@@ -30,12 +32,13 @@ WEIGHTS = {
     "anthem": 0.6,
     "player_close": 0.5,
     "cue": 0.6,
+    "mexican_wave": 0.2,
 }
 """How impressive each kind is when nobody says."""
 
 SIDED = frozenset({"goal", "near_miss", "foul", "card", "substitution", "corner"})
 """Kinds that are always of a side: it scored, just missed, fouled, was shown the card, ..."""
-PLACED = frozenset({"ball_in_crowd", "player_close"})
+PLACED = frozenset({"ball_in_crowd", "player_close", "mexican_wave"})
 """Kinds that only those near their place notice."""
 
 

@@ -74,7 +74,16 @@ _RULE = (
     "limits",
     *GUARDS,
 )
-_RESPONSE = ("gain", "seconds", "delay", "excitement", "embarrassment", "mood", "fatigue")
+_RESPONSE = (
+    "gain",
+    "seconds",
+    "delay",
+    "excitement",
+    "embarrassment",
+    "mood",
+    "fatigue",
+    "applause",
+)
 
 
 def load_table(name: str | Path) -> BehaviourTable:
@@ -208,7 +217,7 @@ class _Reader:
                 self.fail(line, f"clips of variant {number}: {clips!r} is no expression: {error}")
         return Variant(
             clips=clips,
-            effort=self.number(value.get("effort", 1.0), line, "effort", 1e-3),
+            effort=self.number(value.get("effort", 1.0), line, "effort", 1e-6),
             excitement=self.number(value.get("excitement", 0.0), line, "excitement", 0.0, 1.0),
         )
 
@@ -240,7 +249,7 @@ class _Reader:
             yield Rule(
                 origin=origin,
                 target=given["to"],
-                effort=self.number(given.get("effort", 1.0), line("effort"), "effort", 1e-3),
+                effort=self.number(given.get("effort", 1.0), line("effort"), "effort", 1e-6),
                 events=frozenset(events),
                 relations=frozenset(self.names(relations, line("side"), "side", RELATIONS)),
                 calm=event is False,
@@ -267,8 +276,8 @@ class _Reader:
                 given = self.table(value, place)
                 self.known(given, _RESPONSE, place)
                 delay = self.pair(given.pop("delay", [0.15, 0.6]), line, "delay", 0.0, 60.0)
-                low = {"gain": 0.0, "seconds": 0.0}
-                high = {"seconds": 3600.0, "gain": 1000.0}
+                low = {"gain": 0.0, "seconds": 0.0, "applause": -10.0}
+                high = {"seconds": 3600.0, "gain": 1000.0, "applause": 10.0}
                 numbers = {
                     key: self.number(
                         value,

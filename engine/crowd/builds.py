@@ -29,7 +29,9 @@ def draw_bodies(
     old: float,
     height: float,
     rng: np.random.Generator,
+    *,
     women: float = 0.0,
+    is_child: NDArray[np.bool_] | None = None,
 ) -> tuple[Body, NDArray[np.float32]]:
     """Bodies of `count` agents, and their uniform scales on a character of adult size.
 
@@ -45,11 +47,18 @@ def draw_bodies(
         Where choices come from.
     women
         Share of women among the grown-ups, and of girls among the children.
+    is_child
+        (N,) who the children are; drawn if None.
     """
     body = Body.allocate(count)
     draw = rng.random(count)
-    body.kind[draw < children + old] = OLD
-    body.kind[draw < children] = CHILD
+    if is_child is None:
+        is_child = draw < children
+        draw = draw - children
+    else:
+        draw *= 1.0 - children
+    body.kind[draw < old] = OLD
+    body.kind[is_child] = CHILD
     spread, wide = rng.standard_normal((2, count))
     scale = np.empty(count)
     for kind in (ADULT, CHILD, OLD):

@@ -21,6 +21,7 @@ Layout = Literal["bowl", "stand"]
 Poses = Literal["streams", "baked"]
 Offsets = Literal["normal", "uniform"]
 Fans = Literal["away block", "mixed", "blocks"]
+Parties = Literal["football", "general"]
 LAYOUTS: tuple[Layout, ...] = get_args(Layout)
 
 _CHOICES: dict[str, tuple[str, ...]] = {
@@ -28,6 +29,7 @@ _CHOICES: dict[str, tuple[str, ...]] = {
     "poses": get_args(Poses),
     "offsets": get_args(Offsets),
     "fans": get_args(Fans),
+    "parties": get_args(Parties),
 }
 
 _WHOLE = {
@@ -88,6 +90,9 @@ class CrowdSpec:
     ultras
         Share of home supporters who make more of everything and stand all match; three times as
         many of the others.
+    parties
+        Who comes with whom: ``"football"``, a quarter of the people alone and parties of four on
+        average; or ``"general"``, mostly pairs. Children come with adults.
     behaviour
         Table of what people do: ``sport``, ``rock_concert``, ``classical_concert``, ``speech``, or
         a file.
@@ -147,6 +152,7 @@ class CrowdSpec:
         default="away block", metadata=_help("how sides sit: away block, mixed or blocks")
     )
     ultras: float = field(default=0.05, metadata=_help("share of supporters who are ultras"))
+    parties: Parties = field(default="football", metadata=_help("party sizes: football or general"))
     behaviour: str = field(default="sport", metadata=_help("behaviour table: a name or a file"))
     embarrassment: float = field(default=0.25, metadata=_help("of the whole crowd, 0 to 1"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))

@@ -10,7 +10,7 @@ from ...components.team import MOST_SIDES
 from ...engine.behaviour.events import Event
 from ...engine.behaviour.table_file import TABLES
 from ...engine.crowd.bowl import MAX_SEATS
-from ...engine.crowd.spec import CrowdSpec, Fans, Layout, Offsets, Poses
+from ...engine.crowd.spec import CrowdSpec, Fans, Layout, Offsets, Parties, Poses
 from ...engine.crowd.stand import MOST_ROWS
 from ...systems.crowd import Crowd as CrowdColumns
 from ...systems.simulation import Simulation
@@ -69,6 +69,7 @@ class Stadium(Node3D):
     child_share: float = export(default=0.06, range=(0, 1), group="Crowd", changed="_spec_changed")
     old_share: float = export(default=0.1, range=(0, 1), group="Crowd", changed="_spec_changed")
     women: float = export(default=0.4, range=(0, 1), group="Crowd", changed="_spec_changed")
+    parties: Parties = export(default="football", group="Crowd", changed="_spec_changed")
     behaviour: str = export(default="sport", group="Crowd", changed="_spec_changed")
     embarrassment: float = export(
         default=0.25, range=(0, 1), group="Crowd", changed="_spec_changed"

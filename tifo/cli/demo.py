@@ -54,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     how.add_argument(
         "--seconds", type=float, metavar="S", help="stop after S seconds (headless: 6 if absent)"
     )
+    how.add_argument("--events", metavar="TOML", help="file with what happens, and when")
     how.add_argument("--screenshot", metavar="PNG", help="write the last picture")
     how.add_argument("--record", metavar="MP4", help="write a clip")
 
@@ -101,6 +102,7 @@ def run(options: argparse.Namespace) -> int:
         seconds=_seconds(options.seconds),
         screenshot=options.screenshot,
         record=options.record,
+        events=options.events,
         fullscreen=options.fullscreen,
         vsync=not options.no_vsync,
         scene=options.scene,

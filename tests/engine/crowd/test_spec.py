@@ -54,6 +54,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "character": TEXT,
     "motions": st.lists(TEXT),
     "fans": st.sampled_from(["away block", "mixed", "blocks"]),
+    "parties": st.sampled_from(["football", "general"]),
     "ultras": SHARE,
     "behaviour": TEXT,
     "embarrassment": SHARE,
