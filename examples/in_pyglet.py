@@ -107,16 +107,26 @@ def opposite(metres: float) -> Mat4:
 
 def main() -> None:
     parser = argparse.ArgumentParser()
-    parser.add_argument("--seconds", type=float, help="end after so many seconds")
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        help="end after so many seconds, in which the second window is closed and opened again",
+    )
     seconds = parser.parse_args().seconds
     game = Game()
     if seconds is not None:
         game.goal()
-        pyglet.clock.schedule_once(lambda _: pyglet.app.exit(), seconds)
+        later = pyglet.clock.schedule_once
+        later(lambda _: game.windows[1].dispatch_event("on_close"), 0.4 * seconds)
+        later(lambda _: game.open("both", game.stands), 0.6 * seconds)
+        later(lambda _: pyglet.app.exit(), seconds)
     pyglet.app.run()
     for crowd, _ in game.stands:
         noise = esper.component_for_entity(crowd.entity, Noise).level
         print(f"stand {crowd.entity}: {noise:.0%} are up")
+        crowd.release_graphics()
+    for window in game.windows:
+        window.close()
 
 
 if __name__ == "__main__":

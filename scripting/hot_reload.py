@@ -21,7 +21,7 @@ from .packed_scene import PackedScene
 from .reports import report
 from .resources import Resource, file_of, load, loaded_files, resource_path_of, resource_root
 from .scene_patch import patch_instance
-from .signals import Signal
+from .signals import Signal, emit_if_made
 from .tree import SceneTree
 
 SECONDS = 0.5
@@ -56,19 +56,34 @@ class HotReload:
         self._tree = tree
         self._stamps: dict[Path, Stamp] = {}
         self._due = 0.0
+        self._seen: list[Path] = []
         self._look()
 
     def poll(self) -> None:
-        """Look at the files if that is due; cheap enough for every frame."""
+        """Look at the files if that is due; cheap enough for every frame.
+
+        What changed is taken over when the next tick begins.
+        """
         now = monotonic()
         if now >= self._due:
             self._due = now + SECONDS
-            self.check()
+            changed = self._look()
+            if changed and not self._seen:
+                self._tree.at_next_tick(self._take_seen)
+            self._seen += [file for file in changed if file not in self._seen]
 
     def check(self) -> list[str]:
-        """Look at the files now; paths of those that were taken over."""
+        """Look at the files and take over what changed now; paths of what was taken over."""
+        return self._take(self._look())
+
+    def _take_seen(self) -> None:
+        files, self._seen = self._seen, []
+        self._take(files)
+
+    def _take(self, files: list[Path]) -> list[str]:
         done: list[str] = []
-        for file in self._look():
+        # Scripts first: a scene may use what they have now.
+        for file in sorted(files, key=lambda file: (file.suffix != ".py", str(file))):
             path = resource_path_of(file)
             try:
                 for take_over in self._takers(file):
@@ -79,6 +94,7 @@ class HotReload:
             done.append(path)
         for path in done:
             self.reloaded.emit(path)
+            emit_if_made(self._tree, "file_taken", path)
         return done
 
     def _look(self) -> list[Path]:
@@ -93,8 +109,7 @@ class HotReload:
             if self._stamps.setdefault(file, stamp) != stamp:
                 self._stamps[file] = stamp
                 changed.append(file)
-        # Scripts first: a scene may use what they have now.
-        return sorted(changed, key=lambda file: (file.suffix != ".py", str(file)))
+        return changed
 
     def _takers(self, file: Path) -> Iterator[Callable[[], object]]:
         """What has to be done about a file."""

@@ -84,7 +84,7 @@ class Node(Exported):
         self._input_on = self._unhandled_on = self._step_on = False
         self._needs_ready, self._ready_begun = True, False
         self._leaving = self._queued = self._freed = False
-        self._position_in_tree = 0
+        self._position_in_tree = 0.0
         self.scene_path = ""
 
     def __init_subclass__(cls, **arguments: Any) -> None:

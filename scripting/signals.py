@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from typing import Any, Generic, Self, TypeVar, TypeVarTuple, get_args, overload
 
@@ -93,16 +94,16 @@ class Connection:
         self.live = self.plain = False
 
 
-class Waiter:
+class Waiter(ABC):
     """What waits for a signal: it is resumed with the arguments, or told that none will come."""
 
+    @abstractmethod
     def resume(self, *args: Any) -> None:
         """The signal was emitted."""
-        raise NotImplementedError
 
+    @abstractmethod
     def lost(self, error: FreedError) -> None:
         """The signal will never be emitted."""
-        raise NotImplementedError
 
 
 class BoundSignal(Generic[*Ts]):

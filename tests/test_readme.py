@@ -15,6 +15,28 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 DRAWING = {"run_scene": ("--headless",), "in_moderngl": (), "in_pyglet": ("--seconds", "2")}
 """Examples that draw, with the words that let them end by themselves."""
+COUNT = """
+import gc, runpy
+import pyglet
+from tifo.systems.crowd import Crowd
+
+contexts, draw = [], Crowd.draw
+def counting(crowd, *words, **more):
+    draw(crowd, *words, **more)
+    if id(pyglet.gl.current_context) not in contexts:
+        contexts.append(id(pyglet.gl.current_context))
+        kept.append(pyglet.gl.current_context)  # so that no other one gets its id
+kept = []
+Crowd.draw = counting
+runpy.run_path({path!r}, run_name="__main__")
+Crowd.draw = draw
+kept.clear()
+from tifo.engine.gl import collect, live_objects
+gc.collect()
+collect()
+print("windows drawn in:", len(contexts))
+print("objects:", live_objects())
+"""
 EXAMPLES = sorted(p for p in (ROOT / "examples").glob("*.py") if p.stem not in DRAWING)
 
 
@@ -70,11 +92,15 @@ def test_a_crowd_is_drawn_in_a_moderngl_program(tmp_path: Path) -> None:
 
 
 @pytest.mark.gl
-def test_two_crowds_run_in_a_pyglet_game(display: str) -> None:
-    said = run(ROOT / "examples" / "in_pyglet.py", *DRAWING["in_pyglet"], display=display)
+def test_two_crowds_run_in_a_pyglet_game(display: str, tmp_path: Path) -> None:
+    """One window is closed and opened again on the way, and no GL object is left."""
+    script = tmp_path / "count.py"
+    script.write_text(COUNT.format(path=str(ROOT / "examples" / "in_pyglet.py")))
+    said = run(script, *DRAWING["in_pyglet"], display=display)
     shares = [int(share) for share in re.findall(r"stand \d+: (\d+)% are up", said)]
     assert len(shares) == 2
     assert min(shares) > 50
+    assert said.splitlines()[-2:] == ["windows drawn in: 3", "objects: {}"]
 
 
 def is_a_picture(path: Path) -> bool:

@@ -155,6 +155,16 @@ tree.close()
     assert int(more.split()[0]) > 1.2 * int(wave.split()[0])
 
 
+def test_all_that_it_uses_is_installed_on_the_way() -> None:
+    installed = set(re.findall(r"^    pip install (\w+)$", PAGE, re.MULTILINE))
+    assert installed == {"tifo", "pytest"}
+    texts = [text for step in range(1, 9) for name, _, text in boxes(step) if name[-3:] == ".py"]
+    used = {name for text in texts for name in re.findall(r"^(?:from|import) (\w+)", text, re.M)}
+    used |= set(re.findall(r"^    python -m (\w+)", PAGE, re.MULTILINE))
+    assert "pytest" in used
+    assert used - installed <= sys.stdlib_module_names
+
+
 def test_a_letter_in_a_number_is_told_with_its_line(folder: Path, tmp_path: Path) -> None:
     import tifo
 

@@ -80,6 +80,7 @@ if TYPE_CHECKING:
         InputEventMouseButton,
         InputEventMouseMotion,
     )
+    from .scripting.input_log import InputLog
     from .scripting.input_map import InputMap
     from .scripting.input_state import Input
     from .scripting.lifecycle import ProcessMode
@@ -163,6 +164,7 @@ __all__ = [
     "InputEventKey",
     "InputEventMouseButton",
     "InputEventMouseMotion",
+    "InputLog",
     "InputMap",
     "JointOverride",
     "Kit",
@@ -276,6 +278,7 @@ _SCRIPTING = {
     "exports": "Export export exports_of",
     "input_events": "InputEvent InputEventAction InputEventJoypadButton InputEventJoypadMotion"
     " InputEventKey InputEventMouseButton InputEventMouseMotion",
+    "input_log": "InputLog",
     "input_map": "InputMap",
     "input_state": "Input",
     "lifecycle": "ProcessMode",

@@ -8,12 +8,13 @@ from typing import Protocol, TypeVar
 
 from ...components.team import MOST_SIDES
 from ...engine.behaviour.events import Event
-from ...engine.behaviour.table_file import TABLES
+from ...engine.behaviour.table_file import TABLES, load_table
 from ...engine.crowd.bowl import MAX_SEATS
 from ...engine.crowd.spec import CrowdSpec, Fans, Layout, Offsets, Parties, Poses
 from ...engine.crowd.stand import MOST_ROWS
 from ...systems.crowd import Crowd as CrowdColumns
 from ...systems.simulation import Simulation
+from ...systems.tables import exchange_table
 from ..exports import export
 from ..lifecycle import ancestors
 from ..node import Node
@@ -138,9 +139,24 @@ class Stadium(Node3D):
         self.simulation.send(event)
 
     def _sources(self) -> Iterable[tuple[str, Callable[[], object]]]:
-        table = () if self.behaviour in TABLES else (self.behaviour,)
-        paths = (self.character, *table, *self.motions)
-        return ((path, self._spec_changed) for path in paths)
+        yield from ((path, self._body_changed) for path in (self.character, *self.motions))
+        if self.behaviour not in TABLES:
+            yield self.behaviour, self._table_changed
+
+    def _body_changed(self) -> None:
+        if self._simulation is not None:
+            fresh = Simulation(self.spec)  # what can't be built leaves the old one running
+            self._close()
+            self._simulation = fresh
+            self.rebuilt.emit()
+
+    def _table_changed(self) -> None:
+        simulation, table = self._simulation, load_table(_file(self.behaviour))
+        if simulation is not None:
+            with simulation.active():
+                is_taken = exchange_table(simulation.crowd, table)
+            if not is_taken:
+                self._body_changed()
 
     def _spec_changed(self) -> None:
         if self._simulation is not None:

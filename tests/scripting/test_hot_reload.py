@@ -330,7 +330,7 @@ def test_files_are_looked_at_now_and_then(
     monkeypatch.setattr(hot_reload, "monotonic", lambda: now[0])
     reload.poll()
     looks: list[float] = []
-    monkeypatch.setattr(reload, "check", lambda: looks.append(now[0]))
+    monkeypatch.setattr(reload, "_look", lambda: looks.append(now[0]) or [])
     for _ in range(120):
         now[0] += 1 / 60
         reload.poll()

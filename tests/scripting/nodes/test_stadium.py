@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from importlib.resources import files
 from pathlib import Path
 
 import esper
 import pytest
 
 import tifo
-from tifo import CrowdSpec, SceneTree, ScriptError, Simulation, Stadium, load_scene, nodes
+from tifo import (
+    CrowdSpec,
+    HotReload,
+    SceneTree,
+    ScriptError,
+    Simulation,
+    Stadium,
+    load_scene,
+    nodes,
+)
+from tifo.engine.behaviour.compiled import CompiledTable
 from tifo.scripting import resources
 
 
@@ -110,6 +121,49 @@ def test_freeing_it_deletes_its_world(tree: SceneTree, stadium: Stadium) -> None
     assert world not in esper.list_worlds()
     with pytest.raises(ValueError, match="has no simulation any more"):
         _ = stadium.simulation
+
+
+def test_a_table_that_changes_is_taken_over_and_a_broken_one_is_not(
+    tree: SceneTree, tmp_path: Path, errors: list[ScriptError]
+) -> None:
+    shipped = files("tifo.engine.behaviour") / "tables" / "sport.toml"
+    file = tmp_path / "own.toml"
+    text = shipped.read_text("utf-8")
+    file.write_text(text)
+    made = tree.root.add_child(Stadium(behaviour=str(file), layout="stand", rows=3, columns=8))
+    reload = HotReload(tree)
+    tree.run(0.5)
+    made.send(tifo.Goal(side=0))
+    tree.run(0.5)
+    before = made.simulation
+    reacting, old = before.crowd.behaviour.reacting.sum(), before.crowd.table
+    assert reacting > 5
+
+    file.write_text(text.replace("pieces = [12, 75]", "pieces = [2, 5]"))
+    assert len(reload.check()) == 1
+    assert made.simulation is before, "who cheers goes on"
+    assert before.crowd.behaviour.reacting.sum() == reacting
+    sit = old.number("sit")
+    assert (*old.pieces[sit], *before.crowd.table.pieces[sit]) == (12, 75, 2, 5)
+    with before.active():
+        assert esper.component_for_entity(before.crowd.entity, CompiledTable) is before.crowd.table
+    tree.run(0.2)
+
+    file.write_text(text + "nonsense")
+    kept = before.crowd.table
+    assert reload.check() == []
+    assert "own.toml" in str(errors.pop())
+    tree.run(0.2)
+    assert made.simulation is before
+    assert before.crowd.table is kept
+    assert made.can_process()
+
+    other = files("tifo.engine.behaviour") / "tables" / "speech.toml"
+    file.write_text(other.read_text("utf-8"))
+    assert len(reload.check()) == 1
+    assert made.simulation is not before, "other states: built anew"
+    tree.run(0.2)
+    assert not errors
 
 
 SCENE = """
