@@ -24,7 +24,7 @@ from .engine.animation.clip import ClipEvent
 from .engine.assets.character import Character, Material, SkinnedMesh, Variant
 from .engine.assets.load import add_motions, load_character
 from .engine.assets.motion_file import Motions, load_motions
-from .engine.assets.props import PROPS, Prop, builtin_prop
+from .engine.assets.props import PROPS, Prop, builtin_prop, drumming
 from .engine.assets.retarget import (
     Humanoid,
     Loop,
@@ -230,6 +230,7 @@ __all__ = [
     "character_of",
     "clone_report",
     "controllers",
+    "drumming",
     "ease",
     "export",
     "export_gltf",

@@ -113,8 +113,8 @@ class CrowdSpec:
         then follows from the motions that are in use; agents whose stream just woke play in step
         for a moment before they drift apart.
     props
-        Share of a side's supporters who have a cap, a scarf or a flag in its colours. They are made
-        for the built-in spectator; other characters have none.
+        Share of a side's supporters who have a cap, a scarf, a flag, a foam hand or, among ultras,
+        a drum in its colours. They are made for the built-in spectator; other characters have none.
     tint
         How much of the agents' colours characters take on whose materials don't say what they are,
         part by part; 0 leaves them as their file has them.
@@ -162,7 +162,7 @@ class CrowdSpec:
     uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))
     rest_idle: bool = field(default=False, metadata=_help("stop streams that nobody shows"))
     props: float = field(
-        default=0.35, metadata=_help("share of supporters with a cap, a scarf or a flag")
+        default=0.35, metadata=_help("share of supporters with a cap, a scarf, a flag, ...")
     )
     tint: float = field(default=1.0, metadata=_help("colours of agents on imported characters"))
     casting: bool = field(default=True, metadata=_help("keep neighbours from being clones"))
