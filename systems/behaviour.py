@@ -8,6 +8,7 @@ import esper
 import numpy as np
 
 from ..components import Behaviour, Emotion, MotionState, Placement, Seat, Team
+from ..engine.behaviour.answers import Answers
 from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.display import motions_to_show
@@ -59,20 +60,16 @@ class BehaviourSystem(esper.Processor):
         emotion, team = component(Emotion), component(Team)
         company = component(Company)
         hugs: Hugs | None = esper.try_component(entity, Hugs)
-        for event in component(EventQueue).take(tick / POSE_RATE):
-            company.see(event, table, team, component(Placement))
+        placement, present = component(Placement), component(Seat).occupied
+        events = component(EventQueue).take(tick / POSE_RATE)
+        for event in events:
+            company.see(event, table, team, placement)
             if hugs is not None:
                 hugs.see(event, tick)
+        for event, began, part in component(Answers).ask(events, tick):
             respond(
-                event,
-                table,
-                behaviour,
-                emotion,
-                team,
-                component(Placement),
-                component(Seat).occupied,
-                tick,
-                self._rng,
+                *(event, table, behaviour, emotion, team, placement, present, began, self._rng),
+                part=part,
             )
         relax(emotion, tick, behaviour.reacting, contagious=True)
         company.step(tick, emotion, behaviour)

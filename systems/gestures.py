@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ..components import Behaviour, Body
 from ..components.overlays import NO_MASK
-from ..engine.behaviour.compiled import KEEP, CompiledTable
+from ..engine.behaviour.compiled import CompiledTable
+from ..engine.behaviour.looks import KEEP
 from ..engine.behaviour.table import SEATED
 from ..engine.crowd.motions import MotionStreams
 from ..engine.streams.overlaying import OverlayStage

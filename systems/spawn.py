@@ -25,6 +25,7 @@ from ..components import (
 from ..engine.animation.clip import rest_clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
+from ..engine.behaviour.answers import Answers
 from ..engine.behaviour.clap_motion import ClapMotion
 from ..engine.behaviour.clip_names import wanted_clips
 from ..engine.behaviour.company import Company
@@ -172,6 +173,7 @@ def spawn_crowd(
         table,
         guidance,
         company,
+        Answers(count),
         party,
         figure,
         find_regions(character, figure, tint=spec.tint),

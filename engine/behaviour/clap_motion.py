@@ -20,6 +20,8 @@ from .rhythm import Rhythm
 
 CONTACT = "clap_contact"
 _LOOK_EVERY = 3
+_MANY = 8192
+"""Of more clappers than this, half are compared with their beats in each pose tick."""
 _STEEPEST = 0.9
 """Poses a pose tick by which an offset may change."""
 
@@ -64,12 +66,15 @@ class ClapMotion:
         begun = self._find(tick, anim.row[0], np.append(good, False))
         if longest != self._longest or self._offsets is None:
             self._longest = longest
-            self._offsets = ClapOffsets(self._count, max(longest, 1.0))
+            self._offsets = ClapOffsets(self._count, max(longest, 1.0), ahead=3)
         if len(begun):
             rhythm.begin(begun)
             self._offsets.forget(begun)
         rhythm.step(self.clappers, 1.0 / POSE_RATE)
         agents = self.clappers
+        if len(agents) > _MANY:
+            half = len(agents) // 2
+            agents = agents[half:] if tick % 2 else agents[:half]
         if not len(agents):
             return
         row = np.minimum(anim.row[0, agents], rows - 1)

@@ -175,10 +175,11 @@ class Company:
                     (team.side == event.side) == (relation == Relation.OWN)
                 )
                 who &= relation in (Relation.OWN, Relation.OTHER)
-            ids = np.flatnonzero(who & self._present)
-            if len(ids):
-                fervour = team.fervour[ids] if response.applause > 0 else np.float32(1.0)
-                self.applause.cue(ids, response.applause * weight * fervour)
+            benefit = response.applause * weight
+            if response.applause > 0:
+                self.applause.cue_crowd(who, team.fervour * np.float32(benefit))
+            else:
+                self.applause.cue_crowd(who, benefit, refuse=benefit < 0)
 
     def step(self, tick: int, emotion: Emotion, behaviour: Behaviour) -> None:
         """Advance all mechanisms by a pose tick, and wake those whose signals change."""

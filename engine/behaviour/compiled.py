@@ -9,12 +9,16 @@ from numpy.typing import NDArray
 
 from ..crowd.motions import MotionLibrary, Role
 from ..streams.pool import POSE_RATE
+from .choices import Choices
 from .clip_names import is_seated, matching, other_form
 from .events import KINDS
+from .looks import KEEP, Look, Looks
 from .table import PIECE, POSTURES, RELATIONS, BehaviourTable, Response, Rule, State, Variant
 
-KEEP = -1
-"""A motion or channel value that leaves things as they are."""
+WAKING = frozenset(
+    {"clapping_wanted", "wave_wanted", "spoken_to", "player_near", "hug_first", "hug_second"}
+)
+"""Signals whose changes wake agents (see `company`, `hugs`), so that nobody has to look for them."""
 _REST = "rest"
 """The value of the arms channel, and the first of each list, that means nothing special."""
 
@@ -39,28 +43,6 @@ class CompiledRule:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Look:
-    """How a state can look.
-
-    Parameters
-    ----------
-    motion
-        (L,) int16 motions of the library; -1 keeps what is shown.
-    variant
-        (L,) int16 which variant each is of.
-    chance
-        (L,) float64 1 / effort, shared among the motions of a variant.
-    excitement
-        (L,) float32 from which on each is used.
-    """
-
-    motion: NDArray[np.int16]
-    variant: NDArray[np.int16]
-    chance: NDArray[np.float64]
-    excitement: NDArray[np.float32]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class CompiledTable:
     """A table that a crowd runs on; S states.
 
@@ -70,8 +52,10 @@ class CompiledTable:
         As written.
     names, machine, starts
         Names of the states, the machine of each, and the first state of each machine.
-    rules, looks
-        By state: the ways out and the looks.
+    rules, choices
+        By state the ways out, and what takes one of them.
+    looks
+        By state: how it can look.
     pieces
         (S, 2) least and most pieces of a stay.
     limit, leave_to
@@ -105,7 +89,8 @@ class CompiledTable:
     machine: NDArray[np.int8]
     starts: tuple[int, ...]
     rules: tuple[tuple[CompiledRule, ...], ...]
-    looks: tuple[Look, ...]
+    choices: Choices
+    looks: Looks
     pieces: NDArray[np.int32]
     limit: NDArray[np.int32]
     leave_to: NDArray[np.int16]
@@ -164,7 +149,7 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
             if rule.target == k:
                 continue
             if rule.pairs is None:
-                awake[k] |= not rule.calm
+                awake[k] |= not (rule.calm or any(name in WAKING for name, _ in rule.signals))
                 continue
             pairs = rule.pairs
             awake[k] |= pairs
@@ -197,7 +182,8 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
             for machine in table.machines
         ),
         rules=rules,
-        looks=looks,
+        choices=Choices(rules),
+        looks=Looks(looks),
         pieces=np.array([state.pieces for state in states], np.int32),
         limit=np.array([state.limit for state in states], np.int32) * PIECE,
         leave_to=np.array([index[name] for name in leave], np.int16),

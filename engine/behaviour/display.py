@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...components.behaviour import Behaviour
-from .compiled import KEEP, CompiledTable
+from .compiled import CompiledTable
 from .guidance import ARMS, BODY, HEAD, POSTURE, Guidance, Priority
+from .looks import KEEP
 from .table import SEATED
 
 

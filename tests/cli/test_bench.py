@@ -44,7 +44,8 @@ def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
     systems = result["systems"]
     assert isinstance(systems, dict)
     assert set(systems) == {
-        *("behaviour", "transition", "dilation", "controller", "history", "clipevent", "detail")
+        *("behaviour", "transition", "dilation", "clap", "controller"),
+        *("history", "clipevent", "detail"),
     }
     assert all(set(figure) >= FIGURES for figure in systems.values())
     assert result["goal_tick_ms"] > 0  # type: ignore[operator]
@@ -77,6 +78,20 @@ def test_memory_counts_what_a_crowd_has(capsys: pytest.CaptureFixture[str]) -> N
     assert result["copied_bytes_goal_tick"] >= slice_bytes + 300 * 48
     assert main(["bench", *words, "--runs", "2"]) == 0
     assert "baked ones" in capsys.readouterr().out
+
+
+def test_scaling_measures_the_sizes_up_to_the_one_given(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    result = figures(capsys, "scaling", "--agents", "300", "--runs", "5")
+    situations = result["situations"]
+    assert isinstance(situations, dict)
+    assert list(situations) == [
+        f"300, {name}" for name in ("quiet", "tick of a goal", "10 s after it", "the worst of them")
+    ]
+    assert (result["agents"], result["runs"]) == (300, 5)
+    goal, worst = situations["300, tick of a goal"], situations["300, the worst of them"]
+    assert worst["min_ms"] >= goal["min_ms"] > 0
 
 
 def test_scripting(capsys: pytest.CaptureFixture[str]) -> None:

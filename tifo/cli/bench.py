@@ -7,6 +7,7 @@ frame: pictures of a stadium from each camera.
 memory: what poses and clips take, streamed and baked, and what a tick copies.
 variety: how alike neighbours look and move, before and after casting.
 scripting: a frame of many nodes with `_process`, and emissions of a signal.
+scaling: behaviour alone, quiet and after goals, of 1,000 agents to 1,000,000 or --agents.
 behaviour: applause, rhythm, waves, emotions and parties: what comes out of the models beside what
   is published of people, and what a tick of them costs; with --plot, curves as a picture.
 """
@@ -20,14 +21,14 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame", "memory", "variety", "behaviour", "scripting")
+BENCHMARKS = ("evaluate", "tick", "frame", "memory", "variety", "behaviour", "scripting", "scaling")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``tifo bench``."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument("benchmark", choices=BENCHMARKS, help="what to measure")
-    parser.add_argument("--agents", type=int, default=65_000, metavar="N", help="seats, all taken")
+    parser.add_argument("--agents", type=int, metavar="N", help="seats, all taken (65000)")
     parser.add_argument("--streams", type=int, default=256, metavar="N", help="animation streams")
     parser.add_argument("--joints", type=int, default=82, metavar="N", help="joints (not in frame)")
     parser.add_argument("--history", type=int, default=60, metavar="N", help="poses a stream keeps")
@@ -53,6 +54,8 @@ def run(options: argparse.Namespace) -> int:
     """Run a benchmark and print its figures; the exit code."""
     if options.runs is not None and not 1 <= options.runs <= 100_000:
         raise ValueError(f"--runs is {options.runs}, expected 1 to 100000")
+    if options.agents is None:
+        options.agents = 1_000_000 if options.benchmark == "scaling" else 65_000
     if options.json:
         print(json.dumps(_measure(options)))
         return 0
@@ -113,6 +116,12 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
         def measure() -> dict[str, Any]:
             return behaviour(agents=options.agents, runs=options.runs or 200, plot=options.plot)
 
+    elif options.benchmark == "scaling":
+        from ..benchmarks.scaling import scaling
+
+        def measure() -> dict[str, Any]:
+            return scaling(agents=options.agents, runs=options.runs or 60)
+
     elif options.benchmark == "variety":
         from ..benchmarks.variety import variety
 
@@ -152,7 +161,7 @@ def _report(console: Any, result: dict[str, Any]) -> None:
         keys = ("median_ms", "p10_ms", "p90_ms", "min_ms")
         table.add_row(name, *(f"{figures[key]:.3f}" for key in keys), str(figures["runs"]))
 
-    if result["benchmark"] != "behaviour":
+    if result["benchmark"] not in ("behaviour", "scaling"):
         row("whole", result)
     for group in ("systems", "cameras", "situations"):
         for name, figures in result.get(group, {}).items():
