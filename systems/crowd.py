@@ -31,6 +31,7 @@ from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.events import Event, EventQueue
 from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.walkers import Walkers
 from ..engine.crowd.agents import agent_ids
 from ..engine.crowd.looks import choose
 from ..engine.crowd.motions import MotionLibrary
@@ -47,6 +48,7 @@ from ..engine.streams.ladder import BlendLadder, Focus
 from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
+from .coming import Coming
 from .crowd_drawing import DrawingCalls
 from .crowd_overlays import BLEND_SECONDS, OverlayCalls
 from .crowd_queries import QueryCalls
@@ -61,7 +63,7 @@ FOCUS_RADIUS = 60.0
 
 
 @dataclass(slots=True, eq=False)
-class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
+class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -86,6 +88,8 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
         Clip events; None in a baked crowd.
     physique
         Proportions of the character, its body types and the seats.
+    walkers
+        People on their way; None in a crowd in which nobody walks.
     world
         Name of the esper world that the entity lives in.
     mirrors
@@ -124,6 +128,7 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding):
     clip_feed: ClipEventFeed | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
     physique: Physique | None = None
+    walkers: Walkers | None = None
     parts: dict[str, Part] = field(default_factory=dict)
     world: str = "default"
     mirrors: list[CrowdMirrors] = field(default_factory=list)

@@ -47,6 +47,8 @@ class DetailSystem(esper.Processor):
             if bounds is None or bounds.version != placement.version:
                 bounds = Bounds.of(placement)
                 esper.add_component(entity, bounds)
+            elif bounds.touches != placement.touches:
+                bounds.follow(placement)
             select_detail(
                 detail,
                 placement,

@@ -8,6 +8,7 @@ from enum import IntEnum
 class Phase(IntEnum):
     """esper priorities of the systems: higher runs first."""
 
+    WALKING = 75
     BEHAVIOUR = 70
     TRANSITIONS = 60
     DILATION = 55

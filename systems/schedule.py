@@ -24,6 +24,7 @@ from .dilation import DilationSystem
 from .history import HistorySystem
 from .phases import Phase
 from .transitions import TransitionSystem
+from .walking import WalkingSystem
 
 
 class Schedule(esper.Processor):
@@ -86,6 +87,7 @@ def tick_systems(seed: int) -> list[esper.Processor]:
     """New systems of a tick, in order; each draws from a generator of its own."""
     behaviour, transitions = np.random.SeedSequence([seed, 1]).spawn(2)
     return [
+        WalkingSystem(),
         BehaviourSystem(np.random.default_rng(behaviour)),
         TransitionSystem(np.random.default_rng(transitions)),
         DilationSystem(),
@@ -102,6 +104,7 @@ def add_systems(seed: int, *, levels: bool = True) -> None:
     ``esper.process(clock)`` then runs one tick and one frame.
     """
     phases = (
+        Phase.WALKING,
         Phase.BEHAVIOUR,
         Phase.TRANSITIONS,
         Phase.DILATION,

@@ -66,6 +66,7 @@ from .behaviour import columns_of
 from .casting import cast_crowd
 from .crowd import Crowd
 from .gestures import Gestures
+from .setting_out import Steps, prepare_walking, seats_of_stewards, start_walking
 
 STREAMS_FOR_BODIES = 128
 """With fewer streams, variety of motion is worth more than bones of one's own."""
@@ -96,10 +97,10 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(9)
+    seeds = np.random.SeedSequence(spec.seed).spawn(10)
     rngs = map(np.random.default_rng, seeds)
     rng_seats, rng_sides, rng_looks, rng_motion, rng_place, *rngs_of_people = rngs
-    rng_bodies, rng_deeds, rng_company, rng_casting = rngs_of_people
+    rng_bodies, rng_deeds, rng_company, rng_casting, rng_walks = rngs_of_people
     clips = character.clips or (rest_clip(character.skeleton),)
     figure = make_figure(character)
     behaviour_table = load_table(spec.behaviour)
@@ -112,8 +113,9 @@ def spawn_crowd(
         types=len(make_body_types(character.skeleton, figure)) if bodies else 0,
         baked=spec.poses == "baked",
     )
-    library = cast.library
-    occupied = occupancy_mask(plan, spec, rng_seats)
+    steps = prepare_walking(spec, clips, figure, cast)
+    library = cast.library if steps is None else steps.library
+    occupied, stewards = seats_of_stewards(spec, plan, occupancy_mask(plan, spec, rng_seats))
     side = assign_sides(plan, spec, rng_sides)
     count = plan.count
     in_families = spec.children <= MOST_CHILDREN
@@ -129,7 +131,7 @@ def spawn_crowd(
     emotion = draw_emotion(team.fervour, spec.embarrassment, rng_deeds)
     table = compile_table(behaviour_table, library)
     behaviour = Behaviour.allocate(len(table.starts), count)
-    company = Company(plan, occupied, team, emotion, party, rng_company)
+    company = Company(plan, occupied.copy(), team, emotion, party, rng_company)
     behaviour.signals.update(company.signals)
     settle(table, behaviour, columns_of(behaviour, emotion, team), rng_deeds)
     guidance = Guidance(count, len(table.names), rng_deeds)
@@ -179,11 +181,11 @@ def spawn_crowd(
         find_regions(character, figure, tint=spec.tint),
         character,
     )
-    bank = ClipBank(character.skeleton, cast.clips)
+    bank = ClipBank(character.skeleton, cast.clips if steps is None else steps.clips)
     if spec.poses == "baked":
         _add_baked(crowd, bank, figure, rng_motion)
     else:
-        _add_streams(crowd, bank, figure, cast, offsets or spec.offsets, rng_motion)
+        _add_streams(crowd, bank, figure, cast, steps, offsets or spec.offsets, rng_motion)
     if spec.casting:
         # Offsets that the user gave stay with whom they were given to.
         own = callable(offsets or spec.offsets)
@@ -192,6 +194,8 @@ def spawn_crowd(
     adult = SPECTATOR_HEIGHT / figure.height
     crowd.physique = measure(character.skeleton, figure, types, bank, library, adult)
     esper.add_component(crowd.entity, crowd.physique)
+    if steps is not None:
+        start_walking(crowd, steps, stewards, rng_walks)
     for name, start, stop in plan.sections:
         esper.create_entity(Section(name, crowd.entity, start, stop))
     return crowd
@@ -214,6 +218,7 @@ def _add_streams(
     bank: ClipBank,
     figure: Figure,
     cast: Cast,
+    steps: Steps | None,
     offsets: OffsetSource,
     rng: np.random.Generator,
 ) -> None:
@@ -221,7 +226,7 @@ def _add_streams(
     pool = StreamPool(
         crowd.character.skeleton,
         bank,
-        capacity=spec.streams + spec.spare_streams,
+        capacity=spec.streams + spec.spare_streams + (0 if steps is None else len(steps.gaits)),
         history=spec.history,
         markers=figure.joints,
         uniques=spec.uniques,
@@ -229,10 +234,12 @@ def _add_streams(
         bodies=make_body_types(crowd.character.skeleton, figure),
     )
     started = start_cast(pool, cast, spec.streams, spec.history, rng)
-    streams = started.streams
+    streams, ways = started.streams, started.ways
+    if steps is not None:
+        streams, ways = steps.start(pool, streams, ways)
     parts: list[Any] = [pool, started.once]
-    if started.ways is not None:
-        parts.append(started.ways)
+    if ways is not None:
+        parts.append(ways)
     if spec.rest_idle:
         parts.append(StreamNeeds(len(started.kept), always=started.kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
@@ -257,8 +264,12 @@ def _add_streams(
     crowd.clip_feed = ClipEventFeed(pool.clip_events, crowd.seat.occupied)
     parts += [streams, uniques, slots, anim, crowd.transition, crowd.ladder]
     parts += [overlays, crowd.overlays]
-    parts += [crowd.dilation, crowd.clip_feed, ClapMotion(cast.clips, count)]
-    parts.append(Gestures(crowd.table, count))
+    parts += [
+        crowd.dilation,
+        crowd.clip_feed,
+        ClapMotion(steps.clips if steps else cast.clips, count),
+        Gestures(crowd.table, count),
+    ]
     assert crowd.company is not None
     hugs = Hugs(crowd.plan, crowd.company.party, crowd.body, crowd.placement, rng)
     crowd.behaviour.signals.update(hugs.signals)

@@ -63,6 +63,8 @@ GREETING_RADIUS = 14.0
 """Metres up to which people wave to a player or reach out to him."""
 GREETING = 9.0
 """Seconds that he stays there."""
+AWAY = np.float32(1e3)
+"""Threshold of clapping of people who aren't there."""
 _STEP = 1.0 / POSE_RATE
 
 
@@ -106,6 +108,7 @@ class Company:
         self.contagion.excitement_rest = emotion.rest_excitement
         self.party = party
         self._threshold = self.applause.threshold.copy()
+        self._away = np.zeros(count, np.bool_)
         self._wave: MexicanWave | None = None
         self._eager = np.zeros(0, np.float32)
         left, right = _neighbours(plan, party)
@@ -136,6 +139,10 @@ class Company:
         """Let agents, ids or a mask, get up for a Mexican wave; ids of those who do."""
         ids = agent_ids(agents, len(self._present))
         return self.wave.start(ids) if len(ids) else ids
+
+    def excuse(self, agents: NDArray[np.int64], away: bool) -> None:
+        """Let agents take no part in applause while they are away or on their way, or again."""
+        self._away[agents] = away
 
     def see(self, event: Event, compiled: CompiledTable, team: Team, placement: Placement) -> None:
         """Let an event ask for applause, end a wave, or say how far away it was."""
@@ -265,6 +272,7 @@ class Company:
         self.applause.ground[who] = self.contagion.clap_benefit(unusual)
         shy = np.float32(SHY[0]) + np.float32(SHY[1]) * emotion.embarrassment[who]
         self.applause.threshold[who] = self._threshold[who] * shy
+        self.applause.threshold[who][self._away[who]] = AWAY
         if self._wave is not None:
             bored = self._wave.threshold[who]
             bored += (self._eager[who] - bored) * np.float32(PIECE / POSE_RATE / FRESH_AGAIN)

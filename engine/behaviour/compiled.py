@@ -18,7 +18,7 @@ from .table import PIECE, POSTURES, RELATIONS, BehaviourTable, Response, Rule, S
 WAKING = frozenset(
     {"clapping_wanted", "wave_wanted", "spoken_to", "player_near", "hug_first", "hug_second"}
 )
-"""Signals whose changes wake agents (see `company`, `hugs`), so that nobody has to look for them."""
+"""Signals whose changes wake agents (`company`, `hugs`), so that nobody has to look for them."""
 _REST = "rest"
 """The value of the arms channel, and the first of each list, that means nothing special."""
 

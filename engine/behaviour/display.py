@@ -82,9 +82,9 @@ def _heard(
     behaviour: Behaviour, agents: NDArray[np.int64], priority: Priority
 ) -> NDArray[np.bool_]:
     """Whose orders of a priority count now: events drown scripts."""
-    if priority is Priority.GUIDED:
-        return np.ones(len(agents), np.bool_)
-    return ~behaviour.reacting[agents]
+    if priority is Priority.SCRIPTED:
+        return ~behaviour.reacting[agents]
+    return np.ones(len(agents), np.bool_)
 
 
 def _is_banned(

@@ -138,5 +138,5 @@ class Hugs:
         over = seconds >= stay
         yaw[:, over] = self._base[:, pair[over]]
         self._placement.yaw[self._pairs[:, pair]] = yaw
-        self._placement.version += 1
+        self._placement.touch(self._pairs[:, pair].ravel())
         self._hugging[pair[over]] = False

@@ -41,10 +41,11 @@ _WHOLE = {
     "spare_streams": (0, 256),
     "history": (2, 254),
     "slots": (0, 8192),
+    "stewards": (0, 1000),
     "uniques": (0, 2048),
     "seed": (0, 2**63 - 1),
 }
-_FLAGS = ("rest_idle", "lod", "casting")
+_FLAGS = ("rest_idle", "lod", "casting", "walking")
 _REAL = {
     "step": (0.3, 10.0),
     "rise": (0.0, 10.0),
@@ -58,6 +59,7 @@ _REAL = {
     "props": (0.0, 1.0),
     "tint": (0.0, 1.0),
     "ultras": (0.0, 1.0),
+    "latecomers": (0.0, 1.0),
     "embarrassment": (0.0, 1.0),
 }
 
@@ -101,6 +103,13 @@ class CrowdSpec:
         and hair where the character has such variants.
     embarrassment
         Of the whole crowd: nobody minds being seen at 0, everybody does at 1.
+    latecomers
+        Share of the people who come within the first five minutes and walk to their seats.
+    stewards
+        Stewards on the gangways; each has the agent of a seat that stays empty.
+    walking
+        Whether people can be told to come and go (`Crowd.arrive`, `Crowd.leave`); always where
+        there are latecomers or stewards. It takes a bowl, streams, and a clip of walking.
     streams, history
         Animation streams and poses kept of each.
     spare_streams
@@ -155,6 +164,9 @@ class CrowdSpec:
     parties: Parties = field(default="football", metadata=_help("party sizes: football or general"))
     behaviour: str = field(default="sport", metadata=_help("behaviour table: a name or a file"))
     embarrassment: float = field(default=0.25, metadata=_help("of the whole crowd, 0 to 1"))
+    latecomers: float = field(default=0.0, metadata=_help("share of people who come late"))
+    stewards: int = field(default=0, metadata=_help("stewards on the gangways, 0 to 1000"))
+    walking: bool = field(default=False, metadata=_help("let people come and go"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
     spare_streams: int = field(default=0, metadata=_help("further streams for your own motions"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
@@ -200,6 +212,11 @@ class CrowdSpec:
     def seat_count(self) -> int:
         """Seats of the layout, taken or not."""
         return self.seats if self.layout == "bowl" else self.rows * self.columns
+
+    @property
+    def walks(self) -> bool:
+        """Whether people can be on their way."""
+        return self.walking or self.latecomers > 0.0 or self.stewards > 0
 
     def replace(self, **changes: object) -> CrowdSpec:
         """A copy with other values; ValueError also for a name that is not a field."""

@@ -75,6 +75,9 @@ class Stadium(Node3D):
     embarrassment: float = export(
         default=0.25, range=(0, 1), group="Crowd", changed="_spec_changed"
     )
+    latecomers: float = export(default=0.0, range=(0, 1), group="Crowd", changed="_spec_changed")
+    stewards: int = export(default=0, range=(0, 1000), group="Crowd", changed="_spec_changed")
+    walking: bool = export(default=False, group="Crowd", changed="_spec_changed")
     props: float = export(default=0.35, range=(0, 1), group="Crowd", changed="_spec_changed")
     tint: float = export(default=1.0, range=(0, 1), group="Crowd", changed="_spec_changed")
     casting: bool = export(default=True, group="Crowd", changed="_spec_changed")

@@ -25,6 +25,8 @@ _FROM_SPEC = (
     "ultras",
     "behaviour",
     "embarrassment",
+    "latecomers",
+    "stewards",
     "children",
     "old",
     "women",
@@ -80,7 +82,15 @@ def add_crowd_arguments(parser: argparse.ArgumentParser) -> None:
         help="metres a unit of BVH files, guessed if absent",
     )
     kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float, "tint": float}
-    kinds.update({"embarrassment": float, "children": float, "old": float, "women": float})
+    kinds.update(
+        {
+            "latecomers": float,
+            "embarrassment": float,
+            "children": float,
+            "old": float,
+            "women": float,
+        }
+    )
     kinds.update({"poses": str, "offsets": str, "behaviour": str})
     for name in _FROM_SPEC:
         kind = kinds.get(name, int)

@@ -58,6 +58,9 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "ultras": SHARE,
     "behaviour": TEXT,
     "embarrassment": SHARE,
+    "latecomers": SHARE,
+    "stewards": st.integers(0, 1000),
+    "walking": st.booleans(),
 }
 
 
