@@ -108,7 +108,7 @@ def spawn_crowd(
         streams=spec.streams,
         history=spec.history,
         types=len(make_body_types(character.skeleton, figure)) if bodies else 0,
-        baked=spec.poses == "baked",
+        baked=spec.poses != "streams",
     )
     library = cast.library
     occupied = occupancy_mask(plan, spec, rng_seats)
@@ -172,6 +172,7 @@ def spawn_crowd(
         guidance,
         company,
         party,
+        crowd.observers,
         figure,
         find_regions(character, figure, tint=spec.tint),
         character,
@@ -179,9 +180,9 @@ def spawn_crowd(
     bank = ClipBank(character.skeleton, cast.clips)
     if spec.poses == "baked":
         _add_baked(crowd, bank, figure, rng_motion)
-    else:
+    elif spec.poses == "streams":
         _add_streams(crowd, bank, figure, cast, offsets or spec.offsets, rng_motion)
-    if spec.casting:
+    if spec.casting and spec.poses != "none":
         # Offsets that the user gave stay with whom they were given to.
         own = callable(offsets or spec.offsets)
         cast_crowd(crowd, rng_casting, motions=not own)

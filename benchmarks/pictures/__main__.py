@@ -15,6 +15,7 @@ from .blend_space import draw_blend_space
 from .lab import draw_lab
 from .machine import draw_machine
 from .overlay import draw_overlay
+from .reactions import draw_before_and_after, draw_long_and_short, draw_one_side
 from .ring import draw_ring
 
 PICTURES: dict[str, Callable[[], Image.Image]] = {
@@ -23,6 +24,9 @@ PICTURES: dict[str, Callable[[], Image.Image]] = {
     "ring": draw_ring,
     "overlay": draw_overlay,
     "lab": draw_lab,
+    "before_and_after": draw_before_and_after,
+    "long_and_short": draw_long_and_short,
+    "one_side": draw_one_side,
 }
 
 
