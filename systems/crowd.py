@@ -50,9 +50,11 @@ from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
 from .coming import Coming
 from .crowd_drawing import DrawingCalls
-from .crowd_overlays import BLEND_SECONDS, OverlayCalls
+from .crowd_overlays import BLEND_SECONDS, OverlayCalls, unstreamed
 from .crowd_queries import QueryCalls
 from .guiding import Guiding
+from .observing import Observers
+from .watching import WatchingCalls
 
 if TYPE_CHECKING:
     from .part import Part
@@ -63,7 +65,7 @@ FOCUS_RADIUS = 60.0
 
 
 @dataclass(slots=True, eq=False)
-class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming):
+class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCalls):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -98,6 +100,8 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming):
         Baked poses and who shows which; None in a streamed crowd.
     parts
         What hangs on the agents, by name.
+    observers
+        Recorders that see every pose tick; `watch` and `watch_clips` add some.
     """
 
     entity: int
@@ -132,6 +136,7 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming):
     parts: dict[str, Part] = field(default_factory=dict)
     world: str = "default"
     mirrors: list[CrowdMirrors] = field(default_factory=list)
+    observers: Observers = field(default_factory=Observers)
 
     def __len__(self) -> int:
         """Number of agents, absent ones included."""
@@ -259,7 +264,9 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming):
 
     def _ladder(self) -> BlendLadder:
         if self.ladder is None:
-            raise ValueError("this crowd is baked and can't blend; use poses='streams'")
+            raise ValueError(
+                f"this crowd {unstreamed(self.spec)} and can't blend; use poses='streams'"
+            )
         return self.ladder
 
     def palettes(
@@ -281,14 +288,15 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming):
         Raises
         ------
         ValueError
-            If an override has no Python form.
+            If an override has no Python form, or the crowd has no poses.
         """
         if self.pool is not None and self.anim is not None and self.transition is not None:
             shown = agent_palettes(self.pool, self.anim, self.transition, 0, agents, tick, alpha)
             assert self.overlays is not None
             shown = self.overlays.lay(shown, agents, tick, alpha)
         else:
-            assert self.baked is not None
+            if self.baked is None:
+                raise ValueError("this crowd has no poses to show; use poses='streams' or 'baked'")
             poses, clips = self.baked
             seconds = (tick - 1 + alpha - clips.began[agents]) / POSE_RATE
             clip, speed = clips.clip[agents].astype(np.int64), clips.speed[agents]
@@ -404,7 +412,8 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming):
 
     def _streams(self) -> StreamPool:
         if self.pool is None:
-            raise ValueError("this crowd's poses are baked; streams have offsets and clip events")
+            kept = self.spec.poses
+            raise ValueError(f"this crowd's poses are {kept}; streams have offsets and clip events")
         return self.pool
 
     def state_hash(self) -> str:

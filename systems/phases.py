@@ -16,5 +16,6 @@ class Phase(IntEnum):
     CONTROLLERS = 50
     HISTORY = 40
     CLIP_EVENTS = 35
+    RECORD = 32
     DETAIL = 30
     RENDER = 20

@@ -154,6 +154,8 @@ def _poses(
             esper.component_for_entity(entity, AgentAnimID),
             esper.component_for_entity(entity, Transition),
         )
+    if not esper.has_component(entity, BakedPoses):
+        raise ValueError("a crowd without poses can't be drawn; use poses='streams' or 'baked'")
     return (
         esper.component_for_entity(entity, BakedPoses),
         esper.component_for_entity(entity, BakedAnim),

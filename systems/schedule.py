@@ -22,6 +22,7 @@ from .controllers import ControllerSystem
 from .detail import DetailSystem
 from .dilation import DilationSystem
 from .history import HistorySystem
+from .observing import RecordSystem
 from .phases import Phase
 from .transitions import TransitionSystem
 from .walking import WalkingSystem
@@ -95,6 +96,7 @@ def tick_systems(seed: int) -> list[esper.Processor]:
         ControllerSystem(),
         HistorySystem(),
         ClipEventSystem(),
+        RecordSystem(),
     ]
 
 
@@ -112,6 +114,7 @@ def add_systems(seed: int, *, levels: bool = True) -> None:
         Phase.CONTROLLERS,
         Phase.HISTORY,
         Phase.CLIP_EVENTS,
+        Phase.RECORD,
     )
     for system, phase in zip(tick_systems(seed), phases, strict=True):
         esper.add_processor(system, phase)

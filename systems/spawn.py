@@ -111,7 +111,7 @@ def spawn_crowd(
         streams=spec.streams,
         history=spec.history,
         types=len(make_body_types(character.skeleton, figure)) if bodies else 0,
-        baked=spec.poses == "baked",
+        baked=spec.poses != "streams",
     )
     steps = prepare_walking(spec, clips, figure, cast)
     library = cast.library if steps is None else steps.library
@@ -177,6 +177,7 @@ def spawn_crowd(
         company,
         Answers(count),
         party,
+        crowd.observers,
         figure,
         find_regions(character, figure, tint=spec.tint),
         character,
@@ -184,9 +185,9 @@ def spawn_crowd(
     bank = ClipBank(character.skeleton, cast.clips if steps is None else steps.clips)
     if spec.poses == "baked":
         _add_baked(crowd, bank, figure, rng_motion)
-    else:
+    elif spec.poses == "streams":
         _add_streams(crowd, bank, figure, cast, steps, offsets or spec.offsets, rng_motion)
-    if spec.casting:
+    if spec.casting and spec.poses != "none":
         # Offsets that the user gave stay with whom they were given to.
         own = callable(offsets or spec.offsets)
         cast_crowd(crowd, rng_casting, motions=not own)

@@ -24,7 +24,7 @@ class TransitionSystem(esper.Processor):
 
     What was asked for since the last pose tick goes before what behaviour wants in this one.
     Where the crowd has ways between sitting and standing, agents at rest take them.
-    Baked crowds can't blend: they change clip at once.
+    Baked crowds can't blend: they change clip at once, and so do crowds without poses.
 
     Parameters
     ----------
@@ -53,6 +53,10 @@ class TransitionSystem(esper.Processor):
             ladder.step(clock.pose_tick, self._rng)
         for _, (state, baked, library) in crowds(MotionState, BakedAnim, MotionLibrary):
             self._bake(state, baked, library, clock.pose_tick)
+        for entity, (state, _) in crowds(MotionState, MotionLibrary):
+            posed = (esper.has_component(entity, kind) for kind in (BlendLadder, BakedAnim))
+            if not any(posed):
+                state.shown[:] = state.wanted
 
     def _want(
         self,

@@ -48,11 +48,12 @@ from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
-from .engine.export import Exported, Recording
+from .engine.export import ClipSchedule, Exported, Recording
 from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
 from .systems.casting import clone_report
+from .systems.clip_recorder import ClipRecorder
 from .systems.crowd import Crowd
 from .systems.export import export_gltf, export_usd
 from .systems.part import Part
@@ -62,6 +63,7 @@ from .systems.recording import Recorder
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
+from .systems.state_recorder import StateRecorder
 
 if TYPE_CHECKING:
     from .engine.animation.controllers import OneShotRequest
@@ -141,6 +143,8 @@ __all__ = [
     "CameraMode",
     "Character",
     "ClipEvent",
+    "ClipRecorder",
+    "ClipSchedule",
     "Clock",
     "Crowd",
     "CrowdSpec",
@@ -203,6 +207,7 @@ __all__ = [
     "Stadium",
     "Stage",
     "StateMachinePlayback",
+    "StateRecorder",
     "Stream",
     "StreamPool",
     "Task",

@@ -20,6 +20,7 @@ from .machine import draw_machine
 from .motions import SHEETS, draw_motions
 from .overlay import draw_overlay
 from .people import draw_bodies, draw_hair, draw_shirts
+from .reactions import draw_before_and_after, draw_long_and_short, draw_one_side
 from .ring import draw_ring
 
 PICTURES: dict[str, Callable[[], Image.Image]] = {
@@ -36,6 +37,9 @@ PICTURES: dict[str, Callable[[], Image.Image]] = {
     "block": draw_block,
     "relative": draw_relative,
     **{f"motions-{k + 1}": partial(draw_motions, k) for k in range(SHEETS)},
+    "before_and_after": draw_before_and_after,
+    "long_and_short": draw_long_and_short,
+    "one_side": draw_one_side,
 }
 """By the names of their files; those of spectators need OpenGL."""
 

@@ -18,7 +18,7 @@ from .settings_file import format_settings, read_settings
 from .stand import MOST_ROWS, MOST_SEATS
 
 Layout = Literal["bowl", "stand"]
-Poses = Literal["streams", "baked"]
+Poses = Literal["streams", "baked", "none"]
 Offsets = Literal["normal", "uniform"]
 Fans = Literal["away block", "mixed", "blocks"]
 Parties = Literal["football", "general"]
@@ -130,7 +130,9 @@ class CrowdSpec:
     casting
         Whether neighbours who were drawn too much alike swap clothes or motions with others.
     poses
-        Whether motions are streamed, or every frame of every clip is baked beforehand.
+        Whether motions are streamed, or every frame of every clip is baked beforehand. With
+        ``"none"`` nobody has poses and nothing can be drawn: only what people do is stepped, many
+        times faster than it happens. Getting up and sitting down take no time then.
     offsets
         How the agents of a stream are first spread over its history.
     seed
@@ -178,7 +180,7 @@ class CrowdSpec:
     )
     tint: float = field(default=1.0, metadata=_help("colours of agents on imported characters"))
     casting: bool = field(default=True, metadata=_help("keep neighbours from being clones"))
-    poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
+    poses: Poses = field(default="streams", metadata=_help("streams, all frames baked, or none"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")
     )

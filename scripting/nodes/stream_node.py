@@ -105,5 +105,5 @@ class StreamNode(Node):
 
 def _pool(data: CrowdColumns) -> StreamPool:
     if data.pool is None:
-        raise ValueError("this crowd's poses are baked; animation nodes need poses='streams'")
+        raise ValueError("this crowd has no streams; animation nodes need poses='streams'")
     return data.pool

@@ -16,6 +16,7 @@ from tifo.benchmarks.pictures.canvas import BLUE, GROUND, Canvas
 from tifo.benchmarks.pictures.figures import joint_places
 from tifo.benchmarks.pictures.machine import FAN
 from tifo.benchmarks.pictures.overlay import make_poses
+from tifo.benchmarks.pictures.reactions import SIZE, head_places, make_stand, run_to
 from tifo.benchmarks.pictures.ring import DRIFT_TO, DRIFTER, HISTORY, make_crowd, offsets
 from tifo.engine.animation.clip_bank import ClipBank
 from tifo.engine.animation.controllers import ClipNode
@@ -137,3 +138,28 @@ def test_a_canvas_is_smooth() -> None:
 
 def _square(rows: np.ndarray) -> np.ndarray:
     return np.vstack([rows, [0, 0, 0, 1]])
+
+
+def test_pictures_of_reactions_lie_in_docs() -> None:
+    for name, rows in (("before_and_after", 2), ("long_and_short", 2), ("one_side", 1)):
+        with Image.open(DOCS / f"{name}.png") as kept:
+            assert kept.width == SIZE[0]
+            assert kept.height >= rows * SIZE[1]
+
+
+@pytest.mark.gl
+def test_circles_are_round_heads(gl: Any) -> None:
+    """The head of somebody who sits is about 1.25 m above the tread, of who stands about 1.6."""
+    simulation = make_stand(rows=2, columns=12, children=0.0, props=0.0)
+    run_to(simulation, 10)
+    crowd = simulation.crowd
+    sits = np.flatnonzero(crowd.behaviour.posture == 0)
+    feet = crowd.placement.position[:, sits].T
+    head = head_places(simulation, sits) - feet
+    assert 1.0 < np.median(head[:, 1]) < 1.4
+    assert np.hypot(head[:, 0], head[:, 2]).max() < 0.8
+    before = np.median(head[:, 1])
+    assert run_to(simulation, 205)[-1] > 0.9
+    after = head_places(simulation, sits) - feet
+    assert np.median(after[:, 1]) > before + 0.25
+    simulation.close()

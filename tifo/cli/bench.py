@@ -10,6 +10,8 @@ scripting: a frame of many nodes with `_process`, and emissions of a signal.
 scaling: behaviour alone, quiet and after goals, of 1,000 agents to 1,000,000 or --agents.
 behaviour: applause, rhythm, waves, emotions and parties: what comes out of the models beside what
   is published of people, and what a tick of them costs; with --plot, curves as a picture.
+soak: a match of --minutes with --events random events, without poses, as fast as it goes: whether
+  people end up doing what they did in the beginning, and nothing gets stuck or grows.
 """
 
 from __future__ import annotations
@@ -21,7 +23,17 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame", "memory", "variety", "behaviour", "scripting", "scaling")
+BENCHMARKS = (
+    "evaluate",
+    "tick",
+    "frame",
+    "memory",
+    "variety",
+    "behaviour",
+    "scripting",
+    "scaling",
+    "soak",
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,7 +47,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--slots", type=int, default=800, metavar="N", help="transition slots (tick, memory)"
     )
-    parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
+    parser.add_argument(
+        "--runs", type=int, metavar="N", help="how many to time (300; frame: 10; soak: 1)"
+    )
     parser.add_argument(
         "--tree", choices=("plain", "deep"), default="plain", help="what streams play (evaluate)"
     )
@@ -44,6 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--listeners", type=int, default=10, metavar="N", help="of a signal (scripting)"
     )
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
+    parser.add_argument("--minutes", type=float, default=90.0, help="of the match (soak)")
+    parser.add_argument("--events", type=int, default=300, metavar="N", help="random ones (soak)")
     parser.add_argument("--plot", metavar="FILE.png", help="draw curves (behaviour)")
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
@@ -122,6 +138,17 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
         def measure() -> dict[str, Any]:
             return scaling(agents=options.agents, runs=options.runs or 60)
 
+    elif options.benchmark == "soak":
+        from ..benchmarks.soak import soak
+
+        def measure() -> dict[str, Any]:
+            return soak(
+                agents=options.agents,
+                minutes=options.minutes,
+                events=options.events,
+                runs=options.runs or 1,
+            )
+
     elif options.benchmark == "variety":
         from ..benchmarks.variety import variety
 
@@ -152,6 +179,9 @@ def _report(console: Any, result: dict[str, Any]) -> None:
         return
     if result["benchmark"] == "variety":
         _report_variety(console, result)
+        return
+    if result["benchmark"] == "soak":
+        _report_soak(console, result)
         return
     table = Table("", "median ms", "10 %", "90 %", "lowest", "runs")
     for column in table.columns[1:]:
@@ -241,6 +271,36 @@ def _report_variety(console: Any, result: dict[str, Any]) -> None:
     console.print(table)
     pairs = next(iter(result["moments"].values()))["pairs"]
     console.print(f"{pairs:,.0f} pairs of neighbours within 3 seats; shares are of these")
+    _report_environment(console, result)
+
+
+def _report_soak(console: Any, result: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    console.print(
+        f"{result['minutes']:g} minutes with {result['events']} events in {result['seconds']:,} s, "
+        f"{result['times_faster']:g} times as fast as they pass"
+    )
+    table = Table("states that changed most", "first 2 minutes", "last 2 minutes")
+    for name, (before, after) in result["shares"].items():
+        table.add_row(name, f"{before:.2%}", f"{after:.2%}")
+    console.print(table)
+    warm, end = (result[f"memory_{when}_bytes"] / 2**20 for when in ("warm", "end"))
+    before, after = result["mean_excitement"]
+    for what, value in (
+        ("states entered", f"{result['states_entered']} of {result['states']}"),
+        ("reacting at once, at most", f"{result['most_reacting']:.0%}"),
+        ("clapping at once, at most", f"{result['most_clapping']:.0%}"),
+        ("mean excitement", f"{before:.3f} before, {after:.3f} after"),
+        ("longer in a state than its limit, at most", f"{result['overstayed_seconds']:.2f} s"),
+        ("memory after a quarter of the events", f"{warm:,.1f} MB"),
+        ("memory at the end", f"{end:,.1f} MB"),
+        ("state", result["state_hash"]),
+    ):
+        console.print(f"{what}: {value}")
+    if result["runs"] > 1:
+        same = "the same state" if result["same_hash"] else "[bold red]different states[/]"
+        console.print(f"{result['runs']} runs ended in {same}")
     _report_environment(console, result)
 
 

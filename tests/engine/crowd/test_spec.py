@@ -46,7 +46,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "history": st.integers(2, 254),
     "slots": st.integers(0, 8192),
     "uniques": st.integers(0, 2048),
-    "poses": st.sampled_from(["streams", "baked"]),
+    "poses": st.sampled_from(["streams", "baked", "none"]),
     "offsets": st.sampled_from(["normal", "uniform"]),
     "rest_idle": st.booleans(),
     "seed": st.integers(0, 2**63 - 1),
@@ -94,7 +94,7 @@ def test_round_trip(tmp_path: Path, values: dict[str, Any]) -> None:
     ("name", "value", "allowed"),
     [
         ("layout", "arena", "'bowl' or 'stand'"),
-        ("poses", "frozen", "'streams' or 'baked'"),
+        ("poses", "frozen", "'streams' or 'baked' or 'none'"),
         ("offsets", 3, "'normal' or 'uniform'"),
         ("seats", 0, "from 1 to 1000000"),
         ("seats", -5, "from 1 to 1000000"),
