@@ -1,7 +1,8 @@
-"""Much of a crowd answers an event in one pose tick, and a large crowd in three.
+"""A small crowd answers an event in its pose tick, and a large crowd in the three that follow.
 
 Nobody reacts within a tenth of a second, which is three pose ticks. So a large crowd is asked a
-third at a time, and what each agent does, and when, counts from the tick of the event.
+third at a time, after the tick in which the event is taken in, and what each agent does, and when,
+counts from the tick of the event.
 """
 
 from __future__ import annotations
@@ -33,10 +34,11 @@ class Answers:
         Agents.
     """
 
-    __slots__ = ("_parts", "_waiting")
+    __slots__ = ("_first", "_parts", "_waiting")
 
     def __init__(self, count: int) -> None:
         parts = 1 if count <= SMALL else ANSWER_TICKS
+        self._first = 0 if parts == 1 else 1
         edges = [count * k // parts for k in range(parts + 1)]
         self._parts = [slice(*pair) for pair in pairwise(edges)]
         self._waiting: list[tuple[Event, int]] = []
@@ -52,11 +54,11 @@ class Answers:
             age = tick - began
             if event.kind in PLACED:
                 due.append(Asking(event, began, slice(0, self._parts[-1].stop)))
-            elif age < len(self._parts):
-                due.append(Asking(event, began, self._parts[age]))
+            elif 0 <= age - self._first < len(self._parts):
+                due.append(Asking(event, began, self._parts[age - self._first]))
         self._waiting = [
             (event, began)
             for event, began in self._waiting
-            if event.kind not in PLACED and tick - began + 1 < len(self._parts)
+            if event.kind not in PLACED and tick - began + 1 - self._first < len(self._parts)
         ]
         return due

@@ -45,7 +45,7 @@ def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
     assert isinstance(systems, dict)
     assert set(systems) == {
         *("behaviour", "transition", "dilation", "clap", "controller", "history", "clipevent"),
-        *("record", "detail"),
+        *("walking", "record", "detail"),
     }
     assert all(set(figure) >= FIGURES for figure in systems.values())
     assert result["goal_tick_ms"] > 0  # type: ignore[operator]
