@@ -224,14 +224,17 @@ class Company:
         some = np.flatnonzero(others >= 0)
         others = others[some].astype(np.int64)
         value = compiled.head[behaviour.state[machine, changed[some]]]
-        talks = value == compiled.head_names.index("talk")
+        talk = compiled.head_names.index("talk")
+        talks = value == talk
         spoken_to = self.signals["spoken_to"]
         spoken_to[others[~talks]] = False
         new = others[talks]
         new = np.unique(new[~spoken_to[new].astype(np.bool_)])
-        if len(new):
-            spoken_to[new] = True
-            wake(behaviour, machine, new, tick + 1)
+        spoken_to[new] = True
+        # Who talks already answers by going on.
+        silent = new[compiled.head[behaviour.state[machine, new]] != talk]
+        if len(silent):
+            wake(behaviour, machine, silent, tick + 1)
 
     def columns(self) -> list[NDArray[np.generic]]:
         """What is part of the crowd's state."""
