@@ -111,7 +111,8 @@ class ClipRecorder(CrowdObserver):
             raise ValueError("no pose tick has passed, so nothing was played")
         if self._observers is not None:
             self._observers.remove(self)
-        self._close(np.arange(len(self._ids)), self._tick)
+        # What only just began has not lasted yet.
+        self._close(np.flatnonzero(self._start < self._tick), self._tick)
         parts = [np.concatenate(parts) for parts in zip(*self._done, strict=True)]
         order = np.lexsort((parts[3], parts[0]))
         agent, code, state, start, end, source, played, blend, period = (p[order] for p in parts)

@@ -11,12 +11,19 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..components import MotionState, Placement, Seat, Team
+from ..components import MotionState, Party, Placement, Seat, Team
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.seating import SeatPlan
 
 Wanted = int | Iterable[int]
 """A number, or several: a range, a list, an array."""
+
+
+Frame = tuple[ArrayLike, tuple[float, float, float, float]]
+"""A (4, 4) matrix from the stadium to clip space, and left, bottom, right and top of a rectangle
+there, -1 to 1 being the picture; `FreeCamera.rectangle` makes one of pixels."""
+CHEST = 1.0
+"""Metres above their feet of what has to be in a rectangle."""
 
 
 class Question(TypedDict, total=False):
@@ -27,8 +34,10 @@ class Question(TypedDict, total=False):
     column: Wanted | None
     section: Wanted | str | Sequence[str] | None
     tier: Wanted | None
+    party: Wanted | None
     motion: str | Sequence[str] | None
     near: tuple[ArrayLike, float] | None
+    framed: Frame | None
     mask: NDArray[np.bool_] | None
     present: bool | None
 
@@ -45,6 +54,11 @@ class QueryCalls:
     seat: Seat
     team: Team
 
+    @property
+    @abstractmethod
+    def party(self) -> Party:
+        """Who came with whom."""
+
     @abstractmethod
     def __len__(self) -> int:
         """Number of agents."""
@@ -57,8 +71,10 @@ class QueryCalls:
         column: Wanted | None = None,
         section: Wanted | str | Sequence[str] | None = None,
         tier: Wanted | None = None,
+        party: Wanted | None = None,
         motion: str | Sequence[str] | None = None,
         near: tuple[ArrayLike, float] | None = None,
+        framed: Frame | None = None,
         mask: NDArray[np.bool_] | None = None,
         present: bool | None = True,
     ) -> NDArray[np.int64]:
@@ -72,10 +88,15 @@ class QueryCalls:
             Of their seats, from 0.
         section
             Name or number of the section, or several.
+        party
+            Numbers of parties: the people who came together have the same in `party.party`.
         motion
             Name of the motion that they show, or several.
         near
             A place in metres, in the stadium's frame, and how far from it their feet may be.
+        framed
+            A rectangle of a camera's picture in which their chests are, hidden or not; see
+            `FreeCamera.rectangle`.
         mask
             (N,) bool: whatever you know of them yourself.
         present
@@ -102,6 +123,7 @@ class QueryCalls:
             ("row", row, self.seat.row),
             ("column", column, self.seat.column),
             ("tier", tier, self.plan.tier),
+            ("party", party, self.party.party),
             ("section", self._section_numbers(section), self.seat.section),
         )
         for name, wanted, values in columns:
@@ -111,6 +133,8 @@ class QueryCalls:
             found &= np.isin(self.motion.shown, self._motion_numbers(motion))
         if near is not None:
             found &= self._within(near)
+        if framed is not None:
+            found &= self._inside(framed)
         if mask is not None:
             given = np.asarray(mask)
             if given.dtype != np.bool_ or given.shape != found.shape:
@@ -141,6 +165,25 @@ class QueryCalls:
             raise ValueError(f"near is {near!r}, expected a place (x, y, z) and metres >= 0")
         off = self.placement.position - place.astype(np.float32)[:, None]
         inside: NDArray[np.bool_] = np.einsum("kn,kn->n", off, off) <= reach * reach
+        return inside
+
+    def _inside(self, framed: Frame) -> NDArray[np.bool_]:
+        try:
+            matrix, (left, bottom, right, top) = framed
+            clip = np.asarray(matrix, np.float64)
+            edges = np.array([left, bottom, right, top], np.float64)
+        except (TypeError, ValueError):
+            clip, edges = np.zeros(0), np.full(4, np.nan)
+        if clip.shape != (4, 4) or not np.isfinite(clip).all() or not np.isfinite(edges).all():
+            raise ValueError(
+                f"framed is {framed!r}, expected a (4, 4) matrix and (left, bottom, right, top)"
+            )
+        chest = np.append(self.placement.position, np.ones((1, len(self))), axis=0)
+        chest[1] += CHEST
+        x, y, _, w = clip @ chest
+        ahead = np.maximum(w, 1e-9)
+        inside: NDArray[np.bool_] = (w > 0) & (x >= edges[0] * ahead) & (x <= edges[2] * ahead)
+        inside &= (y >= edges[1] * ahead) & (y <= edges[3] * ahead)
         return inside
 
 

@@ -130,7 +130,7 @@ def test_a_users_own_system_runs_between_phases(factories: ModuleType, esper_wor
 
 def test_phases_are_in_the_order_of_a_frame() -> None:
     assert [phase.name for phase in sorted(Phase, reverse=True)] == [
-        "BEHAVIOUR", "TRANSITIONS", "DILATION", "CLAPS", "CONTROLLERS", "HISTORY",
+        "WALKING", "BEHAVIOUR", "TRANSITIONS", "DILATION", "CLAPS", "CONTROLLERS", "HISTORY",
         "CLIP_EVENTS", "RECORD", "DETAIL", "RENDER",
     ]  # fmt: skip
 
