@@ -30,6 +30,8 @@ class Relation(IntEnum):
 MACHINES = ("body", "head", "arms")
 """Machines that can run beside each other; those of heads and arms are shown over the body's."""
 RELATIONS = tuple(relation.name.lower() for relation in Relation)
+NO_LIMIT = 10**8
+"""The `limit`, in pieces, of a state in which agents may stay for ever: a hundred days and more."""
 GUARDS = ("excitement", "embarrassment", "mood", "fatigue", "fervour", "weight", "time")
 """Numbers that every crowd has for a rule to ask for: emotions, how impressive the event is, and
 pieces since the state was entered."""
@@ -88,7 +90,7 @@ class State:
     arms: str | None = None
     head: str | None = None
     pieces: tuple[int, int] = (1, 1)
-    limit: int = 600
+    limit: int = NO_LIMIT
     leave_to: str = ""
     variants: tuple[Variant, ...] = ()
     line: int = 0

@@ -45,7 +45,17 @@ from typing import Any, NoReturn
 from ..crowd.motions import Role
 from ..errors import AssetError
 from .events import KINDS
-from .table import GUARDS, POSTURES, RELATIONS, BehaviourTable, Response, Rule, State, Variant
+from .table import (
+    GUARDS,
+    NO_LIMIT,
+    POSTURES,
+    RELATIONS,
+    BehaviourTable,
+    Response,
+    Rule,
+    State,
+    Variant,
+)
 from .table_lines import Lines
 
 TABLES = ("sport", "rock_concert", "classical_concert", "speech")
@@ -179,7 +189,9 @@ class _Reader:
                 line("role"), f"role is {given['role']!r}, expected one of {', '.join(roles)}"
             )
         least, most = self.pieces(given, line("pieces"))
-        limit = self.number(given.get("limit", max(600, most)), line("limit"), "limit", most, 1e6)
+        limit = NO_LIMIT
+        if "limit" in given:
+            limit = int(self.number(given["limit"], line("limit"), "limit", most, 1e6))
         variants = given.get("variants", [])
         if not isinstance(variants, list):
             self.fail(line("variants"), "variants is no list")
@@ -194,7 +206,7 @@ class _Reader:
             arms=given.get("arms"),
             head=given.get("head"),
             pieces=(least, most),
-            limit=int(limit),
+            limit=limit,
             leave_to=given.get("leave_to", ""),
             variants=made,
             line=line(),

@@ -391,3 +391,16 @@ def test_a_goal_without_a_place_has_no_scorer_to_wave_to(spectators: Make) -> No
     simulation.run(seconds=2.0)
     assert np.isinf(crowd.behaviour.signals["distance"]).all()
     assert (crowd.overlays.columns.mask[0] == NO_MASK).all()
+
+
+def test_nobody_talks_alone_or_waves_to_nobody_however_long_it_is_quiet(spectators: Make) -> None:
+    simulation = spectators(rows=8, columns=20, poses="none")
+    crowd = simulation.crowd
+    signals = crowd.behaviour.signals
+    able = signals["neighbour_left"].astype(bool) | signals["neighbour_right"].astype(bool)
+    for _ in range(30):
+        simulation.run(seconds=10.0)
+        assert not (crowd.in_state("wave_hello") | crowd.in_state("reach_out")).any()
+        talks = crowd.in_state("talk_left") | crowd.in_state("talk_right")
+        assert not talks[~able].any()
+        assert not (crowd.in_state("mexican_wave") | crowd.in_state("sit_mexican_wave")).any()
