@@ -14,7 +14,7 @@ from ..engine.animation.clip_bank import ClipBank
 from ..engine.behaviour.events import Goal
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.streams.baked import BakedPoses
-from ..engine.streams.store import PoseStore
+from ..engine.streams.store import DirtyPoses, PoseStore
 from ..systems.crowd import Crowd
 from ..systems.simulation import Simulation
 from .measure import environment
@@ -102,19 +102,19 @@ class _Copied:
         self._store, self._anim = crowd.pool.store, crowd.anim
         self._table = AGENT_BYTES * len(crowd)
         self._version = self._anim.version
-        self._store.take_dirty()
+        self._dirty = self._store.mirror()
+        self._dirty.take()
 
     def tick(self, simulation: Simulation) -> int:
         """Bytes after one more pose tick."""
         simulation.run(seconds=2 / 60)
         changed = self._anim.version != self._version
         self._version = self._anim.version
-        return _pose_bytes(self._store) + changed * self._table
+        return _pose_bytes(self._store, self._dirty.take()) + changed * self._table
 
 
-def _pose_bytes(store: PoseStore) -> int:
+def _pose_bytes(store: PoseStore, dirty: DirtyPoses) -> int:
     """Slices and static rows that changed, and the table of heads, which goes with every tick."""
-    dirty = store.take_dirty()
     total = 16 * (store.stream_rows + store.uniques)
     for array, markers, rows in (
         (store.ring, store.ring_markers, dirty.slices),

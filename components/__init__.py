@@ -19,6 +19,7 @@ from .placement import Placement
 from .seat import Seat, Section
 from .team import Team
 from .view import View
+from .walk import Errand, Stage, Walk
 
 __all__ = [
     "MOST_PARTS",
@@ -32,6 +33,7 @@ __all__ = [
     "Dilation",
     "DilationRequest",
     "Emotion",
+    "Errand",
     "Level",
     "MotionState",
     "Overlays",
@@ -41,7 +43,9 @@ __all__ = [
     "Placement",
     "Seat",
     "Section",
+    "Stage",
     "Team",
     "Transition",
     "View",
+    "Walk",
 ]

@@ -23,8 +23,8 @@ class Behaviour:
     entered
         (M, N) int32 pose tick at which the state was entered.
     until
-        (M, N) int32 pose tick at which the current stay ends, a whole number of pieces after it
-        began, unless something rapid ends it.
+        (M, N) int32 pose tick at which the current stay ends: a whole number of pieces after it
+        began, give or take half a piece where its length was drawn, unless something rapid ends it.
     event, relation
         (N,) int8 kind of the last event that moved the agent, and what it was to the agent; -1
         before the first.

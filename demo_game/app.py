@@ -35,6 +35,8 @@ class Show:
         When to stop; None for a window that stays, and 6 s offscreen.
     screenshot, record
         Files for the last picture and for a clip, or None.
+    events
+        File with what happens, or None.
     fullscreen, vsync
         Of the window.
     scene
@@ -48,6 +50,7 @@ class Show:
     seconds: float | None
     screenshot: str | None
     record: str | None
+    events: str | None = None
     fullscreen: bool = False
     vsync: bool = True
     scene: SceneName = "stadium"
@@ -72,11 +75,8 @@ class Scene(Protocol):
     def captions(self) -> Sequence[Caption]:
         """Words in the picture."""
 
-    def goal(self, side: int) -> str:
-        """Let a side score; what is said of it."""
-
-    def shoot(self, seat: int) -> str:
-        """Send the ball to a seat; what is said of it."""
+    def happen(self, kind: str, side: int, seat: int | None = None) -> str:
+        """Let an event of a side happen, some kinds of it at a seat; what is said of it."""
 
 
 def play(show: Show, *, headless: bool) -> int:
@@ -107,17 +107,35 @@ def make_scene(show: Show) -> Scene:
     AssetError
         If a file can't be used.
     ValueError
-        If the lab is asked for with a character or motions of the user's.
+        If the lab is asked for with a character, motions or events of the user's.
     """
     if show.scene == "lab":
         from .lab import Lab
 
         if show.spec.character or show.spec.motions:
             raise ValueError("the lab shows the built-in spectator and its motions only")
+        if show.events is not None:
+            raise ValueError("nothing of an events file happens in the lab")
         return Lab(show.spec.seed)
     from .match import Match
 
-    return Match(show.spec, show.scale)
+    return Match(show.spec, show.scale, show.events)
+
+
+def plan_events(show: Show, simulation: tifo.Simulation) -> list[tifo.Event]:
+    """Send what the show's file says to the crowd, each event for its time, and return it.
+
+    Raises
+    ------
+    AssetError
+        If the file can't be used.
+    """
+    if show.events is None:
+        return []
+    events = tifo.load_events(show.events, simulation.plan)
+    for event in events:
+        simulation.send(event)
+    return events
 
 
 def has_display() -> bool:

@@ -9,6 +9,8 @@ import tifo
 
 GOAL_LINE, HALF_LENGTH, HALF_WIDTH = 52.5, 50.0, 31.0
 """From the middle to a goal, and of the part of the pitch in which the ball is played, metres."""
+CORNER = (52.5, 34.0)
+"""From the middle of the pitch to a corner flag."""
 PASS_SPEED = 20.0
 STAND_AHEAD = 25.0
 """Metres from a single stand's first row to the middle of play."""
@@ -30,6 +32,7 @@ class Attention:
         crowd = simulation.crowd
         self._rng = np.random.default_rng(simulation.spec.seed)
         self._centre, self._along = _field(simulation)
+        self._seats = simulation.plan.position
         self.ball = self._centre.copy()
         self._pass_to(self.ball, rest=0.5)
         self._look: tifo.LookAt | None = None
@@ -57,10 +60,26 @@ class Attention:
         """The ball goes somewhere, and stays there for a while."""
         self._pass_to(np.array(place), rest=STARE_SECONDS)
 
+    def follow(self, event: tifo.Event) -> None:
+        """The ball goes where an event happens, if it is one of the ball's."""
+        if event.kind == "goal":
+            self.goal(event.side or 0)
+        elif event.place is not None and event.kind == "ball_in_crowd":
+            self.stare(event.place)
+
     def goal(self, side: int) -> None:
         """The ball goes into the net: of the goal at +X, if the home side scores."""
         end = GOAL_LINE if side == 0 else -GOAL_LINE
         self._pass_to(self._centre + end * self._along, rest=STARE_SECONDS)
+
+    def celebration(self, side: int) -> tuple[float, float, float]:
+        """Where the scorer runs to: a corner beside the goal, up to those who sit there."""
+        end = CORNER[0] if side == 0 else -CORNER[0]
+        across = np.array([-self._along[2], 0.0, self._along[0]])
+        corner = self._centre + end * self._along + self._rng.choice((-1, 1)) * CORNER[1] * across
+        apart = np.linalg.norm(self._seats - corner[:, None], axis=0)
+        x, y, z = (float(value) for value in self._seats[:, np.argmin(apart)])
+        return x, y + 1.0, z
 
     def _pass_to(self, place: Point, rest: float) -> None:
         """Fly there, and rest there before the next pass."""

@@ -12,6 +12,7 @@ import tifo
 
 from .app import Show, make_scene
 from .captions import draw_captions, place_captions
+from .keys import EVENT_KEYS, VIEW_KEYS
 from .overlay import Overlay
 from .recording import Clip, write_png
 from .signs import Signs
@@ -19,10 +20,6 @@ from .signs import Signs
 RECORDED_RATE = 30
 FLY_SPEED = 12.0
 """Metres a second; five times that with Shift held."""
-HINT = (
-    "1 2 3  cameras        C  orbit or fly        WASD QE  move        drag, scroll  look\n"
-    "F  fullscreen        V  vsync        P  pause        F12  screenshot        Esc  quit"
-)
 
 
 class Game:
@@ -54,7 +51,7 @@ class Game:
         self.keys: Any = pyglet.window.key.KeyStateHandler()
         self.stage = tifo.Stage(self.simulation, self.window.get_framebuffer_size())
         greet = not self.scene.captions()
-        self.overlay = Overlay(self.window, self.scene.keys + HINT, greet=greet)
+        self.overlay = Overlay(self.window, self.scene.keys + VIEW_KEYS, greet=greet)
         self.signs = Signs(self.window)
         self.overlay.listen(self.simulation.crowd)
         self.paused = False
@@ -102,12 +99,10 @@ class Game:
         """What single keys do."""
         key = self._key
         presets = {key._1: "tv", key._2: "close", key._3: "bowl"}
-        if symbol == key.G:
-            self.overlay.say(self.scene.goal(0))
+        if (kind := EVENT_KEYS.get(chr(symbol).upper()) if symbol < 128 else None) is not None:
+            self._happen(kind, int(bool(modifiers & key.MOD_SHIFT)))
         elif symbol == key.H:
-            self.overlay.say(self.scene.goal(1))
-        elif symbol == key.B:
-            self._shoot(*self._pointer)
+            self._happen("goal", 1)
         elif symbol in presets:
             self.camera = self.scene.camera(presets[symbol], self.stage.size)
         elif symbol == key.C:
@@ -183,14 +178,20 @@ class Game:
         placed = place_captions(self.scene.captions(), self.camera, self.stage.size)
         return draw_captions(self.stage.pixels(), placed) if placed else self.stage.pixels()
 
+    def _happen(self, kind: str, side: int) -> None:
+        """Let something happen, where the mouse points if it needs a place."""
+        seat = None
+        if kind in tifo.PLACED:
+            origin, direction = self.camera.ray(*self._pointer, self.window.get_size())
+            seat = tifo.pick_seat(self.simulation.plan.position, origin, direction)
+            if seat is None:
+                self.overlay.say("the mouse points at no seat")
+                return
+        self.overlay.say(self.scene.happen(kind, side, seat))
+
     def _shoot(self, x: int, y: int) -> None:
-        origin, direction = self.camera.ray(x, y, self.window.get_size())
-        plan = self.simulation.plan
-        seat = tifo.pick_seat(plan.position, origin, direction)
-        if seat is None:
-            self.overlay.say("the ball misses the stands")
-            return
-        self.overlay.say(self.scene.shoot(seat))
+        self._pointer = (x, y)
+        self._happen("ball_in_crowd", 0)
 
 
 def run_window(show: Show, console: Console) -> int:

@@ -113,12 +113,8 @@ class Lab:
             words.append(Caption(_point(middle), station.title, station.text))
         return words
 
-    def goal(self, side: int) -> str:
-        """Nobody plays in the lab."""
-        return ""
-
-    def shoot(self, seat: int) -> str:
-        """The ball of the lab keeps to its way."""
+    def happen(self, kind: str, side: int, seat: int | None = None) -> str:
+        """Nothing: the lab shows what it shows."""
         return ""
 
     def camera(self, name: str, size: tuple[int, int]) -> tifo.FreeCamera:

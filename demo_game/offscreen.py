@@ -43,9 +43,7 @@ def render(show: Show, console: Console) -> int:
         console.print(f"[dim]note:[/] {note}")
     picture, clip = _targets(show, console)
     rate = SOFTWARE_PICTURES_A_SECOND if stage.is_software else PICTURES_A_SECOND
-    seconds = DEFAULT_SECONDS if show.seconds is None else show.seconds
-    camera = scene.camera(show.camera, show.size)
-    pixels = _film(scene, stage, camera, seconds, rate, clip, console)
+    pixels = _film(show, scene, stage, rate, clip, console)
     if picture is not None:
         write_png(picture, pixels)
     stage.close()
@@ -68,16 +66,18 @@ def _targets(show: Show, console: Console) -> tuple[Path | None, Path | None]:
 
 
 def _film(
+    show: Show,
     scene: Scene,
     stage: tifo.Stage,
-    camera: tifo.FreeCamera,
-    seconds: float,
     rate: int,
     clip: Path | None,
     console: Console,
 ) -> NDArray[np.uint8]:
     """Let the show run and draw it: every picture for a clip, else only the last; the last one."""
+    seconds = DEFAULT_SECONDS if show.seconds is None else show.seconds
+    camera = scene.camera(show.camera, show.size)
     pictures = max(round(seconds * rate), 1)
+    goal = int(GOAL_AT * pictures) if show.events is None else None
     ticks = np.diff(np.round(np.linspace(0, seconds * 60, pictures + 1)).astype(int))
     columns = (
         TextColumn("[progress.description]{task.description}"),
@@ -91,8 +91,8 @@ def _film(
         recorder = stack.enter_context(Clip(clip, stage.size, rate)) if clip else None
         task = progress.add_task(f"{len(simulation.crowd):,} spectators", total=pictures)
         for number, due in enumerate(ticks):
-            if number == int(GOAL_AT * pictures):
-                scene.goal(0)
+            if number == goal:
+                scene.happen("goal", 0)
             simulation.run(seconds=due / 60)
             scene.advance(due / 60)
             if recorder is not None:

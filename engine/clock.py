@@ -20,13 +20,22 @@ class Clock:
     ----------
     tick
         Base ticks since the start.
+    ahead
+        Seconds of the next tick that have passed besides what `due` was told; for pictures between
+        the ticks of somebody else's clock.
     """
 
-    __slots__ = ("_remainder", "tick")
+    __slots__ = ("_remainder", "ahead", "tick")
 
     def __init__(self) -> None:
         self.tick = 0
+        self.ahead = 0.0
         self._remainder = 0.0
+
+    @property
+    def remainder(self) -> float:
+        """Seconds since the last tick, less than one tick."""
+        return self._remainder
 
     @property
     def pose_tick(self) -> int:
@@ -41,7 +50,7 @@ class Clock:
     @property
     def alpha(self) -> float:
         """Fraction of the current pose tick that has passed, in [0, 1]."""
-        ticks = self.tick % TICKS_PER_POSE + min(self._remainder * BASE_RATE, 1.0)
+        ticks = self.tick % TICKS_PER_POSE + min((self._remainder + self.ahead) * BASE_RATE, 1.0)
         return min(ticks / TICKS_PER_POSE, 1.0)
 
     @property

@@ -142,6 +142,22 @@ class FreeCamera:
         """Don't let it sink below a height of `ground` metres."""
         self.eye[1] = max(self.eye[1], ground)
 
+    def rectangle(
+        self, first: tuple[float, float], second: tuple[float, float], size: tuple[int, int]
+    ) -> tuple[Matrix, tuple[float, float, float, float]]:
+        """A rectangle of the picture, for ``crowd.where(framed=...)``.
+
+        Parameters
+        ----------
+        first, second
+            Opposite corners, pixels from the left and the bottom of the picture.
+        size
+            Width and height of the picture in pixels.
+        """
+        x, y = (sorted(2.0 * pair[k] / size[k] - 1.0 for pair in (first, second)) for k in (0, 1))
+        matrix = (self.projection(size).astype(float) @ self.view()).astype(np.float32)
+        return matrix, (x[0], y[0], x[1], y[1])
+
     def ray(self, x: float, y: float, size: tuple[int, int]) -> tuple[Vector, Vector]:
         """Origin and unit direction of the ray through a pixel.
 

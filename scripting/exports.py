@@ -113,7 +113,7 @@ class Export:
         if self.choices is not None:
             return f"one of {', '.join(map(repr, self.choices))}"
         text = describe(self.type)
-        return f"{text} from {self.range[0]:g} to {self.range[1]:g}" if self.range else text
+        return f"{text} from {self.range[0]:.9g} to {self.range[1]:.9g}" if self.range else text
 
     def check(self, value: Any) -> Any:
         """`value` as it is stored; ValueError with what is allowed if it isn't."""

@@ -1,7 +1,8 @@
 """What happens in a tick and in a frame, in this order.
 
-A tick: input (`_input`, `_unhandled_input`), deferred calls, the signal `physics_frame`, timers,
-`_physics_process`, deferred calls, timers and tweens of ticks, deferred calls, `queue_free`.
+A tick: changed files, input (`_input`, `_unhandled_input`), deferred calls, the signal
+`physics_frame`, timer nodes, `_physics_process`, deferred calls, timers and tweens of ticks,
+`queue_free`.
 
 A frame: the signal `process_frame`, deferred calls, timer nodes, `_process`, deferred calls, timers
 and tweens, deferred calls, the change of scenes, `queue_free`.
@@ -28,26 +29,17 @@ def tick(tree: SceneTree) -> None:
     delta = STEP * tree.time_scale
     tree.real_delta = STEP
     tree.in_physics = True
+    if tree.before_tick:
+        functions, tree.before_tick = tree.before_tick, []
+        for function in functions:
+            tree.call(function)
     if tree.events:
         events, tree.events = tree.events, []
         for event in events:
             _dispatch(tree, event)
         tree.flush()
     emit_if_made(tree, "physics_frame")
-    order = tree.order
-    order.refresh()
-    for node in order.steps:
-        if node._step_on:
-            node._step(delta, physics=True)
-    for node in order.physics:
-        if node._physics_on:
-            try:
-                result = node._physics_process(delta)
-            except Exception as error:
-                report(error, node._physics_process, "", node)
-            else:
-                if result is not None:
-                    tree.run_if_coroutine(result, node)
+    _round(tree, delta, physics=True)
     tree.flush()
     _run_timers(tree, STEP, physics=True)
     _delete_doomed(tree)
@@ -60,20 +52,7 @@ def frame(tree: SceneTree, real: float) -> None:
     tree.real_delta = real
     emit_if_made(tree, "process_frame")
     tree.flush()
-    order = tree.order
-    order.refresh()
-    for node in order.steps:
-        if node._step_on:
-            node._step(delta, physics=False)
-    for node in order.process:
-        if node._process_on:
-            try:
-                result = node._process(delta)
-            except Exception as error:
-                report(error, node._process, "", node)
-            else:
-                if result is not None:
-                    tree.run_if_coroutine(result, node)
+    _round(tree, delta, physics=False)
     tree.flush()
     _run_timers(tree, real, physics=False)
     tree.flush()
@@ -81,9 +60,31 @@ def frame(tree: SceneTree, real: float) -> None:
     _delete_doomed(tree)
 
 
+def _round(tree: SceneTree, delta: float, *, physics: bool) -> None:
+    """The `_physics_process` or `_process` of all nodes, and before them what tifo's own do."""
+    order = tree.order
+    order.begin()
+    for node in order.steps:
+        if node._step_on:
+            node._step(delta, physics=physics)
+    calls, flag = (order.physics, "_physics_on") if physics else (order.process, "_process_on")
+    resting = order.resting
+    for node, call in calls:
+        if resting and node in resting and not getattr(node, flag):
+            continue
+        try:
+            result = call(delta)
+        except Exception as error:
+            report(error, call, "", node)
+        else:
+            if result is not None:
+                tree.run_if_coroutine(result, node)
+
+
 def _dispatch(tree: SceneTree, event: InputEvent) -> None:
     tree.order.refresh()
     tree.input.take(event)
+    emit_if_made(tree, "input_taken", event)
     tree.input_handled = False
     inputs, unhandled = tree.order.inputs, tree.order.unhandled
     # As a flag and a name, so that callbacks that switch nodes off are heeded at once.

@@ -133,9 +133,10 @@ def enter(top: Node, tree: SceneTree) -> None:
         _take_mode(node, parent, tree)
         for group in node._groups:
             tree.groups.join(node, group)
-        tree.order.changed()
+        tree.order.added(node)
         if "process_priority" in node.__dict__:
             tree.order.prioritised = True
+        node._entered()
         guard(tree, node, "_enter_tree")
         emit(node, "tree_entered")
         emit(tree, "node_added", node)
@@ -179,12 +180,14 @@ def leave(top: Node) -> None:
         node._process_on = node._physics_on = node._step_on = False
         node._input_on = node._unhandled_on = False
         node._ready_begun = False
+        tree.order.resting.add(node)
         for group in node._groups:
             tree.groups.leave(node, group)
         node._tree = None
         node._leaving = False
-    tree.order.shrunk()
+    tree.order.removed(nodes)
     for node in nodes:
+        node._has_left(freed=False)
         emit(tree, "node_removed", node)
         emit(node, "tree_exited")
 
@@ -208,6 +211,7 @@ def end(top: Node) -> None:
     for node in nodes:
         node._freed = node._queued = True
     for node in reversed(nodes):
+        node._has_left(freed=True)
         for task in [*node._tasks]:
             task.cancel()
         for connection in [*node._incoming]:
@@ -250,6 +254,11 @@ def refresh_flags(node: Node) -> None:
     node._input_on = can and "_input" in has and wants.get("_input", True)
     node._unhandled_on = can and "_unhandled_input" in has and wants.get("_unhandled_input", True)
     node._step_on = can and "_step" in has
+    if node._tree is not None:
+        rests = ("_process" in has and not node._process_on) or (
+            "_physics_process" in has and not node._physics_on
+        )
+        (node._tree.order.resting.add if rests else node._tree.order.resting.discard)(node)
 
 
 def forget_unique(node: Node) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import Callable, Coroutine, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, overload
 
 from . import lifecycle
@@ -84,7 +84,7 @@ class Node(Exported):
         self._input_on = self._unhandled_on = self._step_on = False
         self._needs_ready, self._ready_begun = True, False
         self._leaving = self._queued = self._freed = False
-        self._position_in_tree = 0
+        self._position_in_tree = 0.0
         self.scene_path = ""
 
     def __init_subclass__(cls, **arguments: Any) -> None:
@@ -135,6 +135,16 @@ class Node(Exported):
 
     def _made_ready(self) -> None:
         """What node types of this package do just before `_ready`."""
+
+    def _sources(self) -> Iterable[tuple[str, Callable[[], object]]]:
+        """Files that node types of this package were made from, and what to do when they change."""
+        return ()
+
+    def _entered(self) -> None:
+        """What node types of this package do when they enter a tree, before `_enter_tree`."""
+
+    def _has_left(self, *, freed: bool) -> None:
+        """What node types of this package do after they left a tree, or were freed."""
 
     # Names and places
 

@@ -27,6 +27,8 @@ def find_type(toml: TomlFile, keys: tuple[str | int, ...], name: object, base: t
         found = known.get(name, [])
         if not found:
             raise toml.error(keys, f"there is no {what} type {unknown(name, [*known])}")
+        # A game's own Ball goes before tifo's.
+        found = [cls for cls in found if not _is_own(cls)] or found
         if len(found) > 1:
             paths = ", ".join(f"{one.__module__}.{one.__qualname__}" for one in found)
             raise toml.error(keys, f"type '{name}' could be any of {paths}")
@@ -41,7 +43,9 @@ def find_type(toml: TomlFile, keys: tuple[str | int, ...], name: object, base: t
 
 
 def known_types(base: type[E]) -> dict[str, list[type[E]]]:
-    """All subclasses that exist by name; of one that was defined again, the last."""
+    """All subclasses that exist by name, tifo's own included; of one defined again, the last."""
+    for module in ("node3d", "timers", "nodes"):
+        importlib.import_module(f"{__package__}.{module}")
     by_place: dict[tuple[str, str], type[E]] = {}
     stack = [base]
     while stack:
@@ -60,10 +64,17 @@ def type_name(cls: type) -> str:
     path = getattr(module, "resource_path", "")
     if path:
         return f"{path}:{cls.__name__}"
-    own = cls.__module__.startswith(f"{__package__}.")
-    if own or cls.__module__ == "__main__" or "<locals>" in cls.__qualname__:
+    alone = len(known_types(Exported).get(cls.__name__, ())) == 1
+    if _is_own(cls) and alone:
+        return cls.__name__
+    if cls.__module__ == "__main__" or "<locals>" in cls.__qualname__:
         return cls.__name__
     return f"{cls.__module__}.{cls.__qualname__}"
+
+
+def _is_own(cls: type) -> bool:
+    """Whether tifo brings the class."""
+    return cls.__module__.startswith(f"{__package__}.")
 
 
 def _in_script(toml: TomlFile, keys: tuple[str | int, ...], name: str, base: type[E]) -> type[E]:

@@ -168,3 +168,22 @@ def _copied(values: dict[str, Any]) -> dict[str, Any]:
         name: value.copy() if isinstance(value, (list, dict)) else value
         for name, value in values.items()
     }
+
+
+def scene_root(scene: Node | PackedScene | str | Path) -> Node:
+    """Root node of a scene: of a packed one or a file a new instance.
+
+    Raises
+    ------
+    ValueError
+        If it is no scene, or a node that is in use already.
+    AssetError
+        If the file is none.
+    """
+    if isinstance(scene, (str, Path)):
+        scene = load_scene(scene)
+    if isinstance(scene, PackedScene):
+        return scene.instantiate()
+    if not isinstance(scene, Node) or scene._freed or scene.parent is not None:
+        raise ValueError(f"scene is {scene!r}, expected a node without a parent, or a scene")
+    return scene

@@ -121,6 +121,11 @@ def resource_path_of(file: Path) -> str:
     return str(file)
 
 
+def loaded_files() -> dict[Path, Any]:
+    """What was loaded, by file."""
+    return _store.loaded
+
+
 def load(path: str | Path, *, fresh: bool = False) -> Any:
     """What a file holds, read once and then shared; `fresh` reads it again.
 
@@ -266,13 +271,13 @@ def _load_script(path: str, file: Path) -> Any:
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        line = _line_in(file, error)
+        line = line_in(file, error)
         kind = type(error).__name__
         raise AssetError(path, f"line {line}" if line else "", f"{kind}: {error}") from error
     return module
 
 
-def _line_in(file: Path, error: Exception) -> int:
+def line_in(file: Path, error: Exception) -> int:
     """The last line of `file` that an exception came through."""
     line = 0
     if isinstance(error, SyntaxError) and error.filename == str(file):

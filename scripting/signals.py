@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from typing import Any, Generic, Self, TypeVar, TypeVarTuple, get_args, overload
 
@@ -93,16 +94,16 @@ class Connection:
         self.live = self.plain = False
 
 
-class Waiter:
+class Waiter(ABC):
     """What waits for a signal: it is resumed with the arguments, or told that none will come."""
 
+    @abstractmethod
     def resume(self, *args: Any) -> None:
         """The signal was emitted."""
-        raise NotImplementedError
 
+    @abstractmethod
     def lost(self, error: FreedError) -> None:
         """The signal will never be emitted."""
-        raise NotImplementedError
 
 
 class BoundSignal(Generic[*Ts]):
@@ -251,6 +252,10 @@ class BoundSignal(Generic[*Ts]):
         if len(args) > 1:
             return args
         return args[0] if args else None
+
+    def retype(self, count: int) -> None:
+        """Take another number of arguments: the declaration was changed in a running game."""
+        self._count = count
 
     def wait(self, waiter: Waiter) -> Connection:
         """Resume `waiter` once at the next emission; FreedError if there can't be one."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,13 +11,23 @@ from ..engine.errors import GraphicsError
 from ..engine.gl.context import create_offscreen_context, describe_context
 from ..engine.gl.framebuffer import Framebuffer
 from ..engine.render.crowd_renderer import DrawCounts
+from ..engine.render.placed_view import placed_view
 from ..engine.render.present import present
 from ..systems.render import RenderSystem
+from ..systems.render_embedded import SOFTWARE_COARSENESS
 from ..systems.simulation import Simulation
-from .camera import FreeCamera
 
-SOFTWARE_COARSENESS = 2.0
-"""How much sooner coarser meshes are used where the processor draws: it pays for every vertex."""
+Matrix = NDArray[np.float32]
+
+
+class Viewpoint(Protocol):
+    """What can be drawn from: a `FreeCamera`, a `Camera` node, or a camera of your own."""
+
+    def view(self) -> Matrix:
+        """(4, 4) from the world to camera space."""
+
+    def projection(self, size: tuple[int, int]) -> Matrix:
+        """(4, 4) from camera to clip space for a picture of `size` pixels."""
 
 
 class Stage:
@@ -74,13 +86,24 @@ class Stage:
             self._framebuffer.delete()
             self._framebuffer = self._make(size)
 
-    def draw(self, camera: FreeCamera, delta: float = 0.0) -> None:
+    def draw(self, camera: Viewpoint, delta: float = 0.0) -> None:
         """Let `delta` seconds pass and draw what `camera` sees."""
-        width, height = self.size
-        self.simulation.look(camera.view(), camera.projection((width, height)), height)
-        self._framebuffer.bind()
-        self._framebuffer.clear((0.0, 0.0, 0.0, 1.0))
+        self._begin(camera, None)
         self.simulation.advance(delta)
+
+    def show(self, camera: Viewpoint, world_from_stadium: Any = None) -> None:
+        """Draw what `camera` sees of a simulation that somebody else lets run.
+
+        Parameters
+        ----------
+        camera
+            In the world.
+        world_from_stadium
+            (4, 4) place of the stadium in the world, with a uniform scale; as it is if None.
+        """
+        self._begin(camera, world_from_stadium)
+        with self.simulation.active():
+            self.simulation.schedule.frame()
 
     def pixels(self) -> NDArray[np.uint8]:
         """The last picture: (H, W, 3) uint8 sRGB, top row first."""
@@ -95,6 +118,15 @@ class Stage:
         self.simulation.schedule.frame_systems.remove(self._system)
         self._system.delete()
         self._framebuffer.delete()
+
+    def _begin(self, camera: Viewpoint, world_from_stadium: Any) -> None:
+        width, height = self.size
+        view, projection = placed_view(
+            camera.view(), camera.projection((width, height)), world_from_stadium
+        )
+        self.simulation.look(view, projection, height)
+        self._framebuffer.bind()
+        self._framebuffer.clear((0.0, 0.0, 0.0, 1.0))
 
     def _make(self, size: tuple[int, int]) -> Framebuffer:
         most = self._limits.max_texture_size

@@ -21,7 +21,7 @@ from .input_map import InputMap
 from .input_state import Input
 from .node import Node
 from .order import Groups, Order
-from .packed_scene import PackedScene, load_scene
+from .packed_scene import PackedScene, load_scene, scene_root
 from .reports import LogReport, Report, ScriptError, freed, report
 from .signals import Signal, emit_if_made
 from .tasks import Task, as_coroutine
@@ -80,6 +80,10 @@ class SceneTree:
     """Before the `_process` of a frame."""
     physics_frame = Signal[()]()
     """Before the `_physics_process` of a tick."""
+    input_taken = Signal[InputEvent]()
+    """When an event takes effect in a tick, before `_input`."""
+    file_taken = Signal[str]()
+    """When a file that changed was taken over by `HotReload`, with its path."""
     node_added = Signal[Node]()
     node_removed = Signal[Node]()
     scene_changed = Signal[()]()
@@ -108,6 +112,7 @@ class SceneTree:
         self.doomed: list[Node] = []
         self._unique_calls: set[tuple[Any, ...]] = set()
         self.events: list[InputEvent] = []
+        self.before_tick: list[Callable[[], object]] = []
         self.input_handled = False
         self.timers: list[SceneTreeTimer] = []
         self.tweens: list[Tween] = []
@@ -117,7 +122,7 @@ class SceneTree:
         self.root._ready_begun, self.root._needs_ready = True, False
         lifecycle.refresh_modes(self.root)
         if scene is not None:
-            self._put(_as_node(scene))
+            self._put(scene_root(scene))
 
     def __repr__(self) -> str:
         """For messages."""
@@ -226,7 +231,7 @@ class SceneTree:
         AssetError
             If it is the path of a file that is none.
         """
-        scene = _as_node(to)
+        scene = scene_root(to)
         if self._next_scene is not None and self._next_scene is not scene:
             self._next_scene.free()
         self._next_scene = scene
@@ -413,6 +418,10 @@ class SceneTree:
             raise ValueError(f"event is {event!r}, expected an InputEvent")
         self.events.append(event)
 
+    def at_next_tick(self, function: Callable[[], object]) -> None:
+        """Call a function once when the next tick begins, before its input."""
+        self.before_tick.append(function)
+
     def set_input_as_handled(self) -> None:
         """Called in `_input` or `_unhandled_input`: no other node gets this event."""
         self.input_handled = True
@@ -436,13 +445,3 @@ class SceneTree:
     def _put(self, scene: Node) -> None:
         self.current_scene = scene
         self.root.add_child(scene)
-
-
-def _as_node(scene: Node | PackedScene | str | Path) -> Node:
-    if isinstance(scene, (str, Path)):
-        scene = load_scene(scene)
-    if isinstance(scene, PackedScene):
-        return scene.instantiate()
-    if not isinstance(scene, Node) or scene._freed or scene.parent is not None:
-        raise ValueError(f"scene is {scene!r}, expected a node without a parent, or a scene")
-    return scene

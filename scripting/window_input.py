@@ -73,7 +73,10 @@ class WindowInput:
         if gamepads:
             import pyglet
 
-            self._manager = pyglet.input.ControllerManager()
+            try:
+                self._manager = pyglet.input.ControllerManager()
+            except OSError:
+                return  # a container without input devices
             for controller in self._manager.get_controllers():
                 self.on_connect(controller)
             self._manager.push_handlers(self)

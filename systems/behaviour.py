@@ -8,15 +8,19 @@ import esper
 import numpy as np
 
 from ..components import Behaviour, Emotion, MotionState, Placement, Seat, Team
+from ..engine.behaviour.answers import Answers
+from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.display import motions_to_show
 from ..engine.behaviour.emotion import relax
 from ..engine.behaviour.events import EventQueue
 from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.hugs import Hugs
 from ..engine.behaviour.machine import step, union
 from ..engine.behaviour.responses import respond
 from ..engine.clock import Clock
 from ..engine.streams.pool import POSE_RATE
+from .gestures import Gestures
 from .query import crowds
 
 GUIDED_BLEND = 12.0
@@ -54,19 +58,24 @@ class BehaviourSystem(esper.Processor):
             return esper.component_for_entity(entity, kind)
 
         emotion, team = component(Emotion), component(Team)
-        for event in component(EventQueue).take(tick / POSE_RATE):
+        company = component(Company)
+        hugs: Hugs | None = esper.try_component(entity, Hugs)
+        placement, present = component(Placement), component(Seat).occupied
+        events = component(EventQueue).take(tick / POSE_RATE)
+        for event in events:
+            company.see(event, table, team, placement)
+            if hugs is not None:
+                hugs.see(event, tick)
+        for event, began, part in component(Answers).ask(events, tick):
             respond(
-                event,
-                table,
-                behaviour,
-                emotion,
-                team,
-                component(Placement),
-                component(Seat).occupied,
-                tick,
-                self._rng,
+                *(event, table, behaviour, emotion, team, placement, present, began, self._rng),
+                part=part,
             )
-        relax(emotion, tick, behaviour.reacting)
+        relax(emotion, tick, behaviour.reacting, contagious=True)
+        company.step(tick, emotion, behaviour)
+        if hugs is not None:
+            hugs.turn(table, tick)
+            hugs.step(table, behaviour, motion.busy_until, tick)
         changed = step(
             table,
             behaviour,
@@ -76,6 +85,10 @@ class BehaviourSystem(esper.Processor):
             held_until=motion.busy_until,
             blend=motion.blend,
         )
+        company.listen(table, behaviour, changed, tick)
+        gestures = esper.try_component(entity, Gestures)
+        if gestures is not None and len(changed):
+            gestures.update(entity, table, behaviour, changed, self._rng)
         guidance = component(Guidance)
         told = guidance.step(tick, behaviour)
         if len(told):

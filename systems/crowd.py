@@ -20,16 +20,20 @@ from ..components import (
     Dilation,
     Emotion,
     MotionState,
+    Party,
     Placement,
     Seat,
     Team,
     Transition,
 )
 from ..engine.assets.character import Character
+from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.events import Event, EventQueue
 from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.walkers import Walkers
 from ..engine.crowd.agents import agent_ids
+from ..engine.crowd.looks import choose
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.physique import Physique
 from ..engine.crowd.seating import SeatPlan
@@ -44,18 +48,24 @@ from ..engine.streams.ladder import BlendLadder, Focus
 from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
 from ..engine.streams.uniques import Unique, UniquePool
-from .crowd_overlays import BLEND_SECONDS, OverlayCalls
+from .coming import Coming
+from .crowd_drawing import DrawingCalls
+from .crowd_overlays import BLEND_SECONDS, OverlayCalls, unstreamed
+from .crowd_queries import QueryCalls
 from .guiding import Guiding
+from .observing import Observers
+from .watching import WatchingCalls
 
 if TYPE_CHECKING:
     from .part import Part
+    from .render_embedded import CrowdMirrors
 
 FOCUS_RADIUS = 60.0
 """Metres around a focus in which agents never jump."""
 
 
 @dataclass(slots=True, eq=False)
-class Crowd(OverlayCalls, Guiding):
+class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCalls):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -68,6 +78,8 @@ class Crowd(OverlayCalls, Guiding):
         The components that every crowd has.
     emotion, behaviour, table, guidance
         Feelings, states, the behaviour table as it is used, and orders.
+    company
+        Parties, applause, waves, and moods that pass from neighbour to neighbour.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
     overlays
@@ -78,10 +90,18 @@ class Crowd(OverlayCalls, Guiding):
         Clip events; None in a baked crowd.
     physique
         Proportions of the character, its body types and the seats.
+    walkers
+        People on their way; None in a crowd in which nobody walks.
+    world
+        Name of the esper world that the entity lives in.
+    mirrors
+        Holds what `draw` keeps on the GPU, once it was called.
     baked
         Baked poses and who shows which; None in a streamed crowd.
     parts
         What hangs on the agents, by name.
+    observers
+        Recorders that see every pose tick; `watch` and `watch_clips` add some.
     """
 
     entity: int
@@ -98,6 +118,7 @@ class Crowd(OverlayCalls, Guiding):
     library: MotionLibrary
     events: EventQueue
     overrides: OverrideSet
+    company: Company
     emotion: Emotion
     behaviour: Behaviour
     table: CompiledTable
@@ -111,7 +132,11 @@ class Crowd(OverlayCalls, Guiding):
     clip_feed: ClipEventFeed | None = None
     baked: tuple[BakedPoses, BakedAnim] | None = None
     physique: Physique | None = None
+    walkers: Walkers | None = None
     parts: dict[str, Part] = field(default_factory=dict)
+    world: str = "default"
+    mirrors: list[CrowdMirrors] = field(default_factory=list)
+    observers: Observers = field(default_factory=Observers)
 
     def __len__(self) -> int:
         """Number of agents, absent ones included."""
@@ -120,6 +145,46 @@ class Crowd(OverlayCalls, Guiding):
     def send(self, event: Event) -> None:
         """Let the crowd see an event at the next tick."""
         self.events.send(event)
+
+    def dress(self, agents: int | ArrayLike, **choices: str | None) -> None:
+        """Give agents other bodies, hair, or what else the character has variants of.
+
+        Parameters
+        ----------
+        agents
+            Ids.
+        **choices
+            By group: ``crowd.dress(7, hair="bun", beard=None)``; None is none of it. What there is
+            to choose from is in ``tifo.variant_groups(crowd.character)``.
+
+        Raises
+        ------
+        ValueError
+            For ids out of range, or a group or choice that the character has not.
+        """
+        choose(self.character, self.body, agent_ids(agents, len(self)), choices)
+
+    @property
+    def party(self) -> Party:
+        """Who came with whom."""
+        return self.company.party
+
+    def start_wave(self, agents: int | ArrayLike) -> NDArray[np.int64]:
+        """Let agents get up for a Mexican wave, at the next pose tick.
+
+        Whether it runs is up to the others: some thirty people side by side, over a few rows, start
+        one as often as not, and twice as many nearly always.
+
+        Parameters
+        ----------
+        agents
+            An id, ids, or a (N,) boolean mask.
+
+        Returns
+        -------
+        (K,) int64 ids of those who get up: they are there and not up already
+        """
+        return self.company.start_wave(agents)
 
     @property
     def uniques(self) -> UniquePool:
@@ -199,7 +264,9 @@ class Crowd(OverlayCalls, Guiding):
 
     def _ladder(self) -> BlendLadder:
         if self.ladder is None:
-            raise ValueError("this crowd is baked and can't blend; use poses='streams'")
+            raise ValueError(
+                f"this crowd {unstreamed(self.spec)} and can't blend; use poses='streams'"
+            )
         return self.ladder
 
     def palettes(
@@ -221,14 +288,15 @@ class Crowd(OverlayCalls, Guiding):
         Raises
         ------
         ValueError
-            If an override has no Python form.
+            If an override has no Python form, or the crowd has no poses.
         """
         if self.pool is not None and self.anim is not None and self.transition is not None:
             shown = agent_palettes(self.pool, self.anim, self.transition, 0, agents, tick, alpha)
             assert self.overlays is not None
             shown = self.overlays.lay(shown, agents, tick, alpha)
         else:
-            assert self.baked is not None
+            if self.baked is None:
+                raise ValueError("this crowd has no poses to show; use poses='streams' or 'baked'")
             poses, clips = self.baked
             seconds = (tick - 1 + alpha - clips.began[agents]) / POSE_RATE
             clip, speed = clips.clip[agents].astype(np.int64), clips.speed[agents]
@@ -344,14 +412,15 @@ class Crowd(OverlayCalls, Guiding):
 
     def _streams(self) -> StreamPool:
         if self.pool is None:
-            raise ValueError("this crowd's poses are baked; streams have offsets and clip events")
+            kept = self.spec.poses
+            raise ValueError(f"this crowd's poses are {kept}; streams have offsets and clip events")
         return self.pool
 
     def state_hash(self) -> str:
         """Digest of everything that the simulation decided; equal for equal seeds and inputs."""
         digest = hashlib.blake2b(digest_size=16)
         components: list[Any] = [self.motion, self.seat, self.team, self.placement, self.body]
-        components += [self.emotion, self.behaviour]
+        components += [self.emotion, self.behaviour, self.party]
         clips = self.baked[1] if self.baked else None
         overlays = self.overlays.columns if self.overlays else None
         columns = (self.anim, self.transition, overlays, clips)
@@ -363,4 +432,6 @@ class Crowd(OverlayCalls, Guiding):
                 value = getattr(component, column.name)
                 if isinstance(value, np.ndarray):
                     digest.update(np.ascontiguousarray(value).tobytes())
+        for array in self.company.columns():
+            digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ..components.overlays import NO_MASK
 from ..engine.animation.controllers import Mask
 from ..engine.crowd.agents import agent_ids, agent_values
+from ..engine.crowd.spec import CrowdSpec
 from ..engine.streams.overlaying import OverlayStage
 from ..engine.streams.pool import POSE_RATE, Stream
 from ..engine.streams.uniques import Unique
@@ -25,6 +26,7 @@ class OverlayCalls:
     __slots__ = ()
 
     overlays: OverlayStage | None
+    spec: CrowdSpec
 
     @abstractmethod
     def __len__(self) -> int:
@@ -125,5 +127,11 @@ class OverlayCalls:
 
     def _overlays(self) -> OverlayStage:
         if self.overlays is None:
-            raise ValueError("this crowd is baked and has no overlays; use poses='streams'")
+            kept = unstreamed(self.spec)
+            raise ValueError(f"this crowd {kept} and has no overlays; use poses='streams'")
         return self.overlays
+
+
+def unstreamed(spec: CrowdSpec) -> str:
+    """What a crowd is that has no streams, in words."""
+    return "is baked" if spec.poses == "baked" else "has no poses"

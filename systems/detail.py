@@ -34,15 +34,21 @@ class DetailSystem(esper.Processor):
     def process(self, clock: Clock) -> None:
         """One frame."""
         views = crowds(View)
-        if not views:
-            return
-        view = views[0][1][0]
+        if views:
+            self.select(views[0][1][0])
+
+    def select(self, view: View, only: int | None = None) -> None:
+        """Choose for a camera: in all crowds, or in `only` one."""
         for entity, (detail, placement, seat) in crowds(Detail, Placement, Seat):
+            if only not in (None, entity):
+                continue
             figure = esper.component_for_entity(entity, Figure)
             bounds = esper.try_component(entity, Bounds)
             if bounds is None or bounds.version != placement.version:
                 bounds = Bounds.of(placement)
                 esper.add_component(entity, bounds)
+            elif bounds.touches != placement.touches:
+                bounds.follow(placement)
             select_detail(
                 detail,
                 placement,

@@ -92,9 +92,9 @@ def export_usd(
     baked
         Whether points at each frame are written instead of skeletons and skins.
     instances
-        Whether skinned agents are instances of one prototype, which is smallest and fastest, with
-        their colours as primvars; else each is a prim of its own with materials bound to it, which
-        more programs read.
+        Whether skinned agents are instances, one prototype for each look, which is smallest and
+        fastest, with their colours as primvars; else each is a prim of its own with materials bound
+        to it, which more programs read.
 
     Raises
     ------

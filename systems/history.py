@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import esper
 
+from ..components import Detail
 from ..engine.clock import Clock
 from ..engine.streams.pool import StreamPool
 from ..engine.streams.uniques import UniquePool
@@ -15,6 +16,10 @@ class HistorySystem(esper.Processor):
 
     def process(self, clock: Clock) -> None:
         """One base tick; works at pose ticks."""
+        for entity, _ in crowds(Detail):
+            # What draws a crowd must know its time, whoever keeps the clock.
+            if esper.try_component(entity, Clock) is not clock:
+                esper.add_component(entity, clock)
         if clock.is_pose_tick:
             for _, (pool,) in crowds(StreamPool):
                 pool.commit(clock.pose_tick)

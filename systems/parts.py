@@ -36,6 +36,7 @@ from ..engine.streams.pool import StreamPool
 from ..engine.streams.slots import SlotPool
 from ..engine.streams.uniques import UniquePool
 from .crowd import Crowd
+from .crowd_overlays import unstreamed
 from .part import Part
 
 PartMotion = Literal["own", "crowd", "body"]
@@ -172,16 +173,16 @@ def _check_part(
         check_same_skeleton(character.skeleton, crowd.character.skeleton)
     if motion == "crowd" and crowd.pool is None:
         raise ValueError(
-            "motion is 'crowd', and this crowd is baked and has no streams; "
+            f"motion is 'crowd', and this crowd {unstreamed(crowd.spec)} and has no streams; "
             "expected 'own' or 'body'"
         )
     if appearance is not None:
         for column in fields(appearance):
             colours = getattr(appearance, column.name)
-            if isinstance(colours, np.ndarray) and colours.shape != (len(crowd), 4):
+            expected = (len(crowd),) if column.name == "pattern" else (len(crowd), 4)
+            if isinstance(colours, np.ndarray) and colours.shape != expected:
                 raise ValueError(
-                    f"appearance: {column.name} has shape {colours.shape}, "
-                    f"expected ({len(crowd)}, 4)"
+                    f"appearance: {column.name} has shape {colours.shape}, expected {expected}"
                 )
 
 

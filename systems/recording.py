@@ -157,6 +157,7 @@ class Recorder:
             head=crowd.body.head[ids],
             colors=np.stack(looks, axis=1).astype(np.uint8),
             morphs=crowd.physique.morphs if crowd.physique is not None else None,
+            choice=crowd.body.choice[:, ids],
         )
 
 

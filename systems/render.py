@@ -19,7 +19,9 @@ from ..engine.assets.character import Character
 from ..engine.clock import Clock
 from ..engine.crowd.figure import Figure
 from ..engine.crowd.physique import Physique
+from ..engine.crowd.regions import Regions
 from ..engine.crowd.stadium_mesh import StadiumMesh
+from ..engine.gl.state import takes_srgb_bytes, write_srgb
 from ..engine.overrides import OverrideSet
 from ..engine.render.crowd_inputs import CrowdColumns
 from ..engine.render.crowd_renderer import CrowdRenderer, DrawCounts
@@ -59,16 +61,27 @@ class RenderSystem(esper.Processor):
         if not views:
             return
         view = views[0][1][0]
-        frame = Frame(view.view, view.projection, self.size, clock.pose_tick, clock.alpha)
+        encode = takes_srgb_bytes()
+        self.draw(
+            Frame(
+                view.view, view.projection, self.size, clock.pose_tick, clock.alpha, encode=encode
+            )
+        )
+
+    def draw(self, frame: Frame, only: int | None = None) -> None:
+        """Draw one picture: everything, or `only` the crowd that is this entity."""
         self.counts = DrawCounts()
+        write_srgb(not frame.encode)
         for entity, (character, detail) in crowds(Character, Detail):
-            if esper.has_component(entity, Attachment):
+            if esper.has_component(entity, Attachment) or only not in (None, entity):
                 continue
             renderer = self._crowds.get(entity)
             if renderer is None:
                 renderer = self._crowds[entity] = _renderer(entity, character, detail)
             self._draw(renderer, frame)
-        self._draw_parts(frame)
+        self._draw_parts(frame, only)
+        if only is not None:
+            return
         for entity, (mesh,) in crowds(StadiumMesh):
             if entity not in self._stadiums:
                 self._stadiums[entity] = StadiumPass(mesh)
@@ -86,14 +99,14 @@ class RenderSystem(esper.Processor):
         self._crowds.clear()
         self._stadiums.clear()
 
-    def _draw_parts(self, frame: Frame) -> None:
-        """After the crowds, whose tables they share."""
+    def _draw_parts(self, frame: Frame, only: int | None) -> None:
+        """After the crowds, whose tables they share; all parts, or those of `only` one crowd."""
         found = crowds(Attachment, Character, Detail)
         there = {entity for entity, (part, _, _) in found if part.parent in self._crowds}
         for gone in self._parts.keys() - there:
             self._parts.pop(gone).delete()
         for entity, (attachment, character, detail) in found:
-            if entity not in there:
+            if entity not in there or only not in (None, attachment.parent):
                 continue
             if entity not in self._parts:
                 self._parts[entity] = PartRenderer(
@@ -128,6 +141,7 @@ def _crowd_columns(entity: int, looks: Appearance, detail: Detail) -> CrowdColum
         esper.try_component(entity, OverrideSet),
         esper.try_component(entity, Body),
         esper.try_component(entity, Physique),
+        esper.try_component(entity, Regions),
     )
 
 
@@ -140,6 +154,8 @@ def _poses(
             esper.component_for_entity(entity, AgentAnimID),
             esper.component_for_entity(entity, Transition),
         )
+    if not esper.has_component(entity, BakedPoses):
+        raise ValueError("a crowd without poses can't be drawn; use poses='streams' or 'baked'")
     return (
         esper.component_for_entity(entity, BakedPoses),
         esper.component_for_entity(entity, BakedAnim),

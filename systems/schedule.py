@@ -17,12 +17,15 @@ import numpy as np
 from ..engine.clock import Clock
 from .behaviour import BehaviourSystem
 from .clip_events import ClipEventSystem
+from .contagion import ClapSystem
 from .controllers import ControllerSystem
 from .detail import DetailSystem
 from .dilation import DilationSystem
 from .history import HistorySystem
+from .observing import RecordSystem
 from .phases import Phase
 from .transitions import TransitionSystem
+from .walking import WalkingSystem
 
 
 class Schedule(esper.Processor):
@@ -85,12 +88,15 @@ def tick_systems(seed: int) -> list[esper.Processor]:
     """New systems of a tick, in order; each draws from a generator of its own."""
     behaviour, transitions = np.random.SeedSequence([seed, 1]).spawn(2)
     return [
+        WalkingSystem(),
         BehaviourSystem(np.random.default_rng(behaviour)),
         TransitionSystem(np.random.default_rng(transitions)),
         DilationSystem(),
+        ClapSystem(),
         ControllerSystem(),
         HistorySystem(),
         ClipEventSystem(),
+        RecordSystem(),
     ]
 
 
@@ -100,12 +106,15 @@ def add_systems(seed: int, *, levels: bool = True) -> None:
     ``esper.process(clock)`` then runs one tick and one frame.
     """
     phases = (
+        Phase.WALKING,
         Phase.BEHAVIOUR,
         Phase.TRANSITIONS,
         Phase.DILATION,
+        Phase.CLAPS,
         Phase.CONTROLLERS,
         Phase.HISTORY,
         Phase.CLIP_EVENTS,
+        Phase.RECORD,
     )
     for system, phase in zip(tick_systems(seed), phases, strict=True):
         esper.add_processor(system, phase)

@@ -79,7 +79,7 @@ class Simulation:
         self.schedule = Schedule(self.clock, tick_systems(self.spec.seed), [self.detail])
         with self.active():
             self.crowd: Crowd = spawn_crowd(self.spec, self.plan, character, offsets=offsets)
-            if self.spec.props > 0 and fits(character):
+            if self.spec.props > 0 and self.spec.poses != "none" and fits(character):
                 give_props(self.crowd, self.spec.props, tick=self.clock.pose_tick)
             esper.add_processor(self.schedule)
 

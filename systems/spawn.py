@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import esper
@@ -24,25 +25,32 @@ from ..components import (
 from ..engine.animation.clip import rest_clip
 from ..engine.animation.clip_bank import ClipBank
 from ..engine.assets.character import Character
+from ..engine.behaviour.answers import Answers
+from ..engine.behaviour.clap_motion import ClapMotion
+from ..engine.behaviour.clip_names import wanted_clips
+from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import compile_table
 from ..engine.behaviour.display import motions_to_show
 from ..engine.behaviour.emotion import draw_emotion
 from ..engine.behaviour.events import EventQueue
 from ..engine.behaviour.guidance import Guidance
+from ..engine.behaviour.hugs import Hugs
 from ..engine.behaviour.machine import settle
+from ..engine.behaviour.parties import FOOTBALL, GENERAL_PUBLIC, form_parties
 from ..engine.behaviour.table_file import load_table
 from ..engine.crowd.body_types import make_body_types
 from ..engine.crowd.builds import draw_bodies
+from ..engine.crowd.cast import Cast, choose_cast, start_cast
 from ..engine.crowd.colours import draw_appearance
 from ..engine.crowd.figure import Figure, make_figure
 from ..engine.crowd.figure_masks import figure_masks
-from ..engine.crowd.motions import Role, sort_motions, start_streams
+from ..engine.crowd.looks import draw_choices
+from ..engine.crowd.motions import Role
 from ..engine.crowd.occupancy import assign_sides, draw_fervour, occupancy_mask
 from ..engine.crowd.physique import measure
+from ..engine.crowd.regions import find_regions
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
-from ..engine.crowd.twin_streams import affordable_streams, start_twins
-from ..engine.crowd.ways import Way, add_ways, find_ways, start_ways, without_ways
 from ..engine.overrides import OverrideSet
 from ..engine.streams.baked import BakedPoses
 from ..engine.streams.event_feed import ClipEventFeed
@@ -55,10 +63,16 @@ from ..engine.streams.slots import SlotPool
 from ..engine.streams.stream_needs import StreamNeeds
 from ..engine.streams.uniques import UniquePool
 from .behaviour import columns_of
+from .casting import cast_crowd
 from .crowd import Crowd
+from .gestures import Gestures
+from .setting_out import Steps, prepare_walking, seats_of_stewards, start_walking
 
 STREAMS_FOR_BODIES = 128
 """With fewer streams, variety of motion is worth more than bones of one's own."""
+MOST_CHILDREN = 0.5
+"""Share of children up to which each comes with an adult."""
+MIXES = {"football": FOOTBALL, "general": GENERAL_PUBLIC}
 SPECTATOR_HEIGHT = 1.75
 """Metres that a character is scaled to, before agents differ."""
 
@@ -83,29 +97,42 @@ def spawn_crowd(
     offsets
         First offsets on the streams; as the spec says if None.
     """
-    seeds = np.random.SeedSequence(spec.seed).spawn(7)
-    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, rng_bodies, rng_deeds = map(
-        np.random.default_rng, seeds
-    )
+    seeds = np.random.SeedSequence(spec.seed).spawn(10)
+    rngs = map(np.random.default_rng, seeds)
+    rng_seats, rng_sides, rng_looks, rng_motion, rng_place, *rngs_of_people = rngs
+    rng_bodies, rng_deeds, rng_company, rng_casting, rng_walks = rngs_of_people
     clips = character.clips or (rest_clip(character.skeleton),)
-    # Every motion should have streams of its own, and twins of them where there are body types.
-    rows = spec.streams - spec.spare_streams
-    bodies = spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES
-    library = sort_motions(clips, most=max(rows // (7 if bodies else 2), 1))
-    plans = None
-    if spec.poses == "streams":
-        plans = find_ways(clips, library, spec.streams - spec.spare_streams, spec.history)
-    if plans is not None:
-        library = add_ways(library, plans, len(clips))
     figure = make_figure(character)
-    occupied = occupancy_mask(plan, spec, rng_seats)
+    behaviour_table = load_table(spec.behaviour)
+    bodies = spec.children + spec.old > 0 and spec.streams >= STREAMS_FOR_BODIES
+    cast = choose_cast(
+        clips,
+        wanted_clips(behaviour_table, [clip.name for clip in clips]),
+        streams=spec.streams,
+        history=spec.history,
+        types=len(make_body_types(character.skeleton, figure)) if bodies else 0,
+        baked=spec.poses != "streams",
+    )
+    steps = prepare_walking(spec, clips, figure, cast)
+    library = cast.library if steps is None else steps.library
+    occupied, stewards = seats_of_stewards(spec, plan, occupancy_mask(plan, spec, rng_seats))
     side = assign_sides(plan, spec, rng_sides)
     count = plan.count
-    body, size = draw_bodies(count, spec.children, spec.old, figure.height, rng_bodies)
+    in_families = spec.children <= MOST_CHILDREN
+    mix = replace(MIXES[spec.parties], children=spec.children if in_families else 0.0)
+    party = form_parties(plan, occupied, mix, rng_company)
+    body, size = draw_bodies(
+        *(count, spec.children, spec.old, figure.height, rng_bodies),
+        women=spec.women,
+        is_child=party.is_child if in_families else None,
+    )
+    body.choice = draw_choices(character, body, rng_bodies)
     team = Team(side, draw_fervour(side, spec, rng_deeds))
     emotion = draw_emotion(team.fervour, spec.embarrassment, rng_deeds)
-    table = compile_table(load_table(spec.behaviour), library)
+    table = compile_table(behaviour_table, library)
     behaviour = Behaviour.allocate(len(table.starts), count)
+    company = Company(plan, occupied.copy(), team, emotion, party, rng_company)
+    behaviour.signals.update(company.signals)
     settle(table, behaviour, columns_of(behaviour, emotion, team), rng_deeds)
     guidance = Guidance(count, len(table.names), rng_deeds)
     calm = library.draw(Role.CALM, count, rng_motion)
@@ -119,7 +146,7 @@ def spawn_crowd(
         placement=_place(plan, figure, size, rng_place),
         body=body,
         team=team,
-        appearance=draw_appearance(side, rng_looks),
+        appearance=draw_appearance(side, rng_looks, kind=body.kind),
         motion=MotionState.allocate(shown),
         emotion=emotion,
         behaviour=behaviour,
@@ -128,7 +155,9 @@ def spawn_crowd(
         detail=Detail(),
         library=library,
         events=EventQueue(),
+        company=company,
         overrides=OverrideSet(character.skeleton, count),
+        world=str(esper.current_world),
     )
     crowd.entity = esper.create_entity(
         crowd.seat,
@@ -145,20 +174,29 @@ def spawn_crowd(
         behaviour,
         table,
         guidance,
+        company,
+        Answers(count),
+        party,
+        crowd.observers,
         figure,
+        find_regions(character, figure, tint=spec.tint),
         character,
     )
-    if plans is not None:
-        clips = (*clips, *(plan.loop for plan in plans))
-    bank = ClipBank(character.skeleton, clips)
+    bank = ClipBank(character.skeleton, cast.clips if steps is None else steps.clips)
     if spec.poses == "baked":
         _add_baked(crowd, bank, figure, rng_motion)
-    else:
-        _add_streams(crowd, bank, figure, plans, offsets or spec.offsets, rng_motion)
+    elif spec.poses == "streams":
+        _add_streams(crowd, bank, figure, cast, steps, offsets or spec.offsets, rng_motion)
+    if spec.casting and spec.poses != "none":
+        # Offsets that the user gave stay with whom they were given to.
+        own = callable(offsets or spec.offsets)
+        cast_crowd(crowd, rng_casting, motions=not own)
     types = crowd.pool.twins.types if crowd.pool is not None and len(crowd.pool.twins) else ()
     adult = SPECTATOR_HEIGHT / figure.height
     crowd.physique = measure(character.skeleton, figure, types, bank, library, adult)
     esper.add_component(crowd.entity, crowd.physique)
+    if steps is not None:
+        start_walking(crowd, steps, stewards, rng_walks)
     for name, start, stop in plan.sections:
         esper.create_entity(Section(name, crowd.entity, start, stop))
     return crowd
@@ -170,7 +208,7 @@ def _place(
     count = plan.count
     turn = rng.normal(0.0, 0.12, count).clip(-0.35, 0.35)
     return Placement(
-        position=plan.position,
+        position=plan.position.copy(),
         yaw=(plan.yaw + turn).astype(np.float32),
         scale=(size * SPECTATOR_HEIGHT / figure.height).astype(np.float32),
     )
@@ -180,7 +218,8 @@ def _add_streams(
     crowd: Crowd,
     bank: ClipBank,
     figure: Figure,
-    plans: tuple[Way, Way] | None,
+    cast: Cast,
+    steps: Steps | None,
     offsets: OffsetSource,
     rng: np.random.Generator,
 ) -> None:
@@ -188,37 +227,22 @@ def _add_streams(
     pool = StreamPool(
         crowd.character.skeleton,
         bank,
-        capacity=spec.streams,
+        capacity=spec.streams + spec.spare_streams + (0 if steps is None else len(steps.gaits)),
         history=spec.history,
         markers=figure.joints,
         uniques=spec.uniques,
         slots=spec.slots,
         bodies=make_body_types(crowd.character.skeleton, figure),
     )
-    ways_need = 0 if plans is None else sum(plan.streams(spec.history) for plan in plans)
-    motions = len(crowd.library.names)
-    rows = spec.streams - spec.spare_streams
-    own = 0
-    if spec.children + spec.old > 0 and rows >= STREAMS_FOR_BODIES and pool.twins.types:
-        own = affordable_streams(rows, motions, ways_need, len(pool.twins.types))
-    parts: list[Any] = [pool]
-    kept = np.zeros(spec.streams, np.bool_)
-    if plans is None:
-        streams = start_streams(pool, crowd.library, own or rows, rng)
-    else:
-        many = own or rows - ways_need
-        streams = start_streams(pool, without_ways(crowd.library), many, rng)
-        ways, streams = start_ways(pool, crowd.library, plans, streams, spec.history)
-        kept[np.concatenate(ways.rows)] = True
+    started = start_cast(pool, cast, spec.streams, spec.history, rng)
+    streams, ways = started.streams, started.ways
+    if steps is not None:
+        streams, ways = steps.start(pool, streams, ways)
+    parts: list[Any] = [pool, started.once]
+    if ways is not None:
         parts.append(ways)
-    if own:
-        whole = np.zeros(motions, np.bool_)
-        whole[motions if plans is None else motions - len(plans) :] = True
-        streams = start_twins(pool, streams, whole, spec.spare_streams)
-        twins = pool.twins.table[1:, kept]
-        kept[twins[twins >= 0]] = True
     if spec.rest_idle:
-        parts.append(StreamNeeds(spec.streams, always=kept))
+        parts.append(StreamNeeds(len(started.kept), always=started.kept))
     # The crowd is found in the middle of things, so the streams have a past: poses at the ticks
     # before the first one.
     for tick in range(1 - spec.history, 1):
@@ -241,7 +265,16 @@ def _add_streams(
     crowd.clip_feed = ClipEventFeed(pool.clip_events, crowd.seat.occupied)
     parts += [streams, uniques, slots, anim, crowd.transition, crowd.ladder]
     parts += [overlays, crowd.overlays]
-    parts += [crowd.dilation, crowd.clip_feed]
+    parts += [
+        crowd.dilation,
+        crowd.clip_feed,
+        ClapMotion(steps.clips if steps else cast.clips, count),
+        Gestures(crowd.table, count),
+    ]
+    assert crowd.company is not None
+    hugs = Hugs(crowd.plan, crowd.company.party, crowd.body, crowd.placement, rng)
+    crowd.behaviour.signals.update(hugs.signals)
+    parts.append(hugs)
     for component in parts:
         esper.add_component(crowd.entity, component)
 

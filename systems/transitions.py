@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..components import BakedAnim, Body, MotionState
 from ..engine.clock import Clock
 from ..engine.crowd.motions import MotionLibrary, MotionStreams
+from ..engine.crowd.once import OnceStreams
 from ..engine.crowd.ways import Ways
 from ..engine.streams.ladder import BlendLadder
 from ..engine.streams.overlaying import OverlayStage
@@ -23,7 +24,7 @@ class TransitionSystem(esper.Processor):
 
     What was asked for since the last pose tick goes before what behaviour wants in this one.
     Where the crowd has ways between sitting and standing, agents at rest take them.
-    Baked crowds can't blend: they change clip at once.
+    Baked crowds can't blend: they change clip at once, and so do crowds without poses.
 
     Parameters
     ----------
@@ -43,14 +44,19 @@ class TransitionSystem(esper.Processor):
             streams = esper.try_component(entity, MotionStreams)
             if state is not None and streams is not None:
                 ways = esper.try_component(entity, Ways)
+                once = esper.component_for_entity(entity, OnceStreams)
                 kind = esper.component_for_entity(entity, Body).kind
-                self._want(state, ladder, streams, kind, ways, clock.pose_tick)
+                self._want(state, ladder, streams, kind, ways, once, clock.pose_tick)
             stage = esper.try_component(entity, OverlayStage)
             if stage is not None:
                 stage.step(clock.pose_tick, self._rng)
             ladder.step(clock.pose_tick, self._rng)
         for _, (state, baked, library) in crowds(MotionState, BakedAnim, MotionLibrary):
             self._bake(state, baked, library, clock.pose_tick)
+        for entity, (state, _) in crowds(MotionState, MotionLibrary):
+            posed = (esper.has_component(entity, kind) for kind in (BlendLadder, BakedAnim))
+            if not any(posed):
+                state.shown[:] = state.wanted
 
     def _want(
         self,
@@ -59,6 +65,7 @@ class TransitionSystem(esper.Processor):
         streams: MotionStreams,
         kind: NDArray[np.uint8],
         ways: Ways | None,
+        once: OnceStreams,
         tick: int,
     ) -> None:
         ready = state.wanted != state.shown
@@ -79,7 +86,8 @@ class TransitionSystem(esper.Processor):
             ways.enter(ladder.pool, state, agents[resting], *way, tick, self._rng)
             for column, changed in zip((motion, row, offset, blend), way, strict=True):
                 column[resting] = changed
-            row = streams.twins.resolve(row, kind[agents])
+        once.enter(ladder.pool, motion, row, offset, blend, tick, self._rng)
+        row = streams.twins.resolve(row, kind[agents])
         state.shown[agents] = motion
         ladder.ask(BODY, agents, row, offset, blend)
 

@@ -6,6 +6,8 @@ A test marked ``gl`` draws for real and gets the `gl` fixture without asking for
 from __future__ import annotations
 
 import os
+import shutil
+import subprocess
 import sys
 import uuid
 from collections.abc import Iterator
@@ -82,6 +84,33 @@ def shared_data() -> Path:
     if not _SAMPLES.is_dir():
         pytest.skip(f"the sample files are not there: {_SAMPLES} does not exist")
     return _SAMPLES
+
+
+@pytest.fixture(scope="session")
+def display() -> Iterator[str]:
+    """Name of an X display with software GL; skips without Xvfb, and fails in CI."""
+    server = shutil.which("Xvfb")
+    if server is None:
+        message = "window tests need Xvfb: apt-get install xvfb"
+        if os.environ.get("CI"):
+            pytest.fail(message)
+        pytest.skip(message)
+    read, write = os.pipe()
+    process = subprocess.Popen(
+        [server, "-displayfd", str(write), "-screen", "0", "800x600x24", "-nolisten", "tcp"],
+        pass_fds=[write],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(write)
+    with os.fdopen(read) as answer:
+        number = answer.readline().strip()
+    if not number:
+        process.kill()
+        pytest.fail("Xvfb did not start")
+    yield f":{number}"
+    process.terminate()
+    process.wait(timeout=10)
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

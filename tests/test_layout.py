@@ -25,7 +25,7 @@ MOST_LINES = 450
 # Who may import pyglet: the GL layer, the passes, windows and their input, and the programs.
 MAY_USE_PYGLET = re.compile(
     r"tifo\.(engine\.(gl|render)|demo_game|cli)(\.|$)"
-    r"|tifo\.systems\.render$"
+    r"|tifo\.systems\.render\w*$"
     r"|tifo\.scripting\.(window|input)\w*$"
 )
 # Who may besides use the GL objects and passes: what holds a picture of a simulation.

@@ -21,10 +21,10 @@ from .components import (
 )
 from .engine.animation import controllers
 from .engine.animation.clip import ClipEvent
-from .engine.assets.character import Character, Material, SkinnedMesh
+from .engine.assets.character import Character, Material, SkinnedMesh, Variant
 from .engine.assets.load import add_motions, load_character
 from .engine.assets.motion_file import Motions, load_motions
-from .engine.assets.props import PROPS, Prop, builtin_prop
+from .engine.assets.props import PROPS, Prop, builtin_prop, drumming
 from .engine.assets.retarget import (
     Humanoid,
     Loop,
@@ -37,18 +37,23 @@ from .engine.assets.retarget import (
     trim_clip,
 )
 from .engine.assets.spectator import builtin_spectator
+from .engine.assets.variants import one_look, variant_groups
 from .engine.behaviour import BehaviourTable, load_table
-from .engine.behaviour.events import BallHit, Event, Goal
+from .engine.behaviour.event_file import load_events
+from .engine.behaviour.events import PLACED, BallHit, Event, Goal
 from .engine.clock import Clock
 from .engine.crowd.cameras import camera_presets
+from .engine.crowd.kits import PATTERNS, Kit
 from .engine.crowd.pick import pick_seat
 from .engine.crowd.spec import CrowdSpec
 from .engine.crowd.stadium import build_seats
 from .engine.errors import AssetError, GraphicsError, TifoError
-from .engine.export import Exported, Recording
+from .engine.export import ClipSchedule, Exported, Recording
 from .engine.overrides import JointOverride, LookAt, OverriddenJoints, look_at, turn_about
 from .engine.streams import Stream, StreamPool, Unique, UniquePool
 from .scripting.camera import CameraMode, FreeCamera
+from .systems.casting import clone_report
+from .systems.clip_recorder import ClipRecorder
 from .systems.crowd import Crowd
 from .systems.export import export_gltf, export_usd
 from .systems.part import Part
@@ -58,11 +63,16 @@ from .systems.recording import Recorder
 from .systems.schedule import Schedule, add_systems, tick_systems
 from .systems.simulation import Simulation, character_of
 from .systems.spawn import spawn_crowd
+from .systems.state_recorder import StateRecorder
 
 if TYPE_CHECKING:
+    from .engine.animation.controllers import OneShotRequest
+    from .engine.gl.adopted import AdoptedContext, adopt_context
     from .engine.gl.context import open_window
+    from .scripting import nodes
     from .scripting.easing import Ease, Trans, ease
     from .scripting.exports import Export, export, exports_of
+    from .scripting.hot_reload import HotReload
     from .scripting.input_events import (
         InputEvent,
         InputEventAction,
@@ -72,11 +82,23 @@ if TYPE_CHECKING:
         InputEventMouseButton,
         InputEventMouseMotion,
     )
+    from .scripting.input_log import InputLog
     from .scripting.input_map import InputMap
     from .scripting.input_state import Input
     from .scripting.lifecycle import ProcessMode
     from .scripting.node import Node, is_instance_valid
     from .scripting.node3d import Node3D
+    from .scripting.nodes import (
+        Agent,
+        AnimationPlayer,
+        AnimationTree,
+        Ball,
+        Camera,
+        Player,
+        Section,
+        Stadium,
+        StateMachinePlayback,
+    )
     from .scripting.packed_scene import PackedScene, load_scene
     from .scripting.paths import NodePathError
     from .scripting.reports import FreedError, ScriptError
@@ -97,21 +119,32 @@ if TYPE_CHECKING:
     from .scripting.tween import Tween, TweenPause
     from .scripting.vectors import Quaternion, Vector3
     from .scripting.window_input import WindowInput
+    from .scripting.window_run import run
     from .systems.render import RenderSystem
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "PATTERNS",
+    "PLACED",
     "PROPS",
+    "AdoptedContext",
+    "Agent",
     "AgentAnimID",
+    "AnimationPlayer",
+    "AnimationTree",
     "Appearance",
     "AssetError",
+    "Ball",
     "BallHit",
     "Behaviour",
     "BehaviourTable",
+    "Camera",
     "CameraMode",
     "Character",
     "ClipEvent",
+    "ClipRecorder",
+    "ClipSchedule",
     "Clock",
     "Crowd",
     "CrowdSpec",
@@ -125,6 +158,7 @@ __all__ = [
     "Goal",
     "GraphicsError",
     "GroupCall",
+    "HotReload",
     "Humanoid",
     "Input",
     "InputEvent",
@@ -134,8 +168,10 @@ __all__ = [
     "InputEventKey",
     "InputEventMouseButton",
     "InputEventMouseMotion",
+    "InputLog",
     "InputMap",
     "JointOverride",
+    "Kit",
     "LookAt",
     "Loop",
     "Material",
@@ -145,10 +181,12 @@ __all__ = [
     "Node3D",
     "NodePathError",
     "NotHumanoidError",
+    "OneShotRequest",
     "OverriddenJoints",
     "PackedScene",
     "Part",
     "Placement",
+    "Player",
     "ProcessCallback",
     "ProcessMode",
     "Prop",
@@ -162,10 +200,14 @@ __all__ = [
     "Schedule",
     "ScriptError",
     "Seat",
+    "Section",
     "Signal",
     "Simulation",
     "SkinnedMesh",
+    "Stadium",
     "Stage",
+    "StateMachinePlayback",
+    "StateRecorder",
     "Stream",
     "StreamPool",
     "Task",
@@ -177,6 +219,7 @@ __all__ = [
     "TweenPause",
     "Unique",
     "UniquePool",
+    "Variant",
     "Vector3",
     "View",
     "WindowInput",
@@ -184,12 +227,15 @@ __all__ = [
     "add_motions",
     "add_part",
     "add_systems",
+    "adopt_context",
     "build_seats",
     "builtin_prop",
     "builtin_spectator",
     "camera_presets",
     "character_of",
+    "clone_report",
     "controllers",
+    "drumming",
     "ease",
     "export",
     "export_gltf",
@@ -201,17 +247,21 @@ __all__ = [
     "is_instance_valid",
     "load",
     "load_character",
+    "load_events",
     "load_motions",
     "load_scene",
     "load_table",
     "look_at",
     "loop_clip",
     "mirror_clip",
+    "nodes",
+    "one_look",
     "open_window",
     "pick_seat",
     "remove_part",
     "resource_root",
     "retarget",
+    "run",
     "save_resource",
     "save_scene",
     "set_resource_root",
@@ -219,11 +269,14 @@ __all__ = [
     "tick_systems",
     "trim_clip",
     "turn_about",
+    "variant_groups",
 ]
 
 _DRAWING = {
     "RenderSystem": "systems.render",
     "Stage": "scripting.stage",
+    "AdoptedContext": "engine.gl.adopted",
+    "adopt_context": "engine.gl.adopted",
     "open_window": "engine.gl.context",
 }
 _SCRIPTING = {
@@ -231,11 +284,14 @@ _SCRIPTING = {
     "exports": "Export export exports_of",
     "input_events": "InputEvent InputEventAction InputEventJoypadButton InputEventJoypadMotion"
     " InputEventKey InputEventMouseButton InputEventMouseMotion",
+    "input_log": "InputLog",
     "input_map": "InputMap",
     "input_state": "Input",
     "lifecycle": "ProcessMode",
     "node": "Node is_instance_valid",
     "node3d": "Node3D",
+    "nodes": "Agent AnimationPlayer AnimationTree Ball Camera Player Section Stadium"
+    " StateMachinePlayback",
     "packed_scene": "PackedScene load_scene",
     "paths": "NodePathError",
     "reports": "FreedError ScriptError",
@@ -248,6 +304,8 @@ _SCRIPTING = {
     "tween": "Tween TweenPause",
     "vectors": "Quaternion Vector3",
     "window_input": "WindowInput",
+    "window_run": "run",
+    "hot_reload": "HotReload",
 }
 _LATE = _DRAWING | {
     name: f"scripting.{module}" for module, names in _SCRIPTING.items() for name in names.split()
@@ -256,6 +314,12 @@ _LATE = _DRAWING | {
 
 def __getattr__(name: str) -> Any:
     """Load what draws, and what scripts use, only when it is asked for."""
+    if name == "nodes":
+        from .scripting import nodes
+
+        return nodes
+    if name == "OneShotRequest":
+        return controllers.OneShotRequest
     if name not in _LATE:
         raise AttributeError(f"module 'tifo' has no attribute '{name}'")
     from importlib import import_module

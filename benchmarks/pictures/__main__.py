@@ -7,14 +7,20 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from PIL import Image
 
 from .blend_space import draw_blend_space
+from .crowds import draw_block, draw_relative
+from .details import draw_levels, draw_props
 from .lab import draw_lab
 from .machine import draw_machine
+from .motions import SHEETS, draw_motions
 from .overlay import draw_overlay
+from .people import draw_bodies, draw_hair, draw_shirts
+from .reactions import draw_before_and_after, draw_long_and_short, draw_one_side
 from .ring import draw_ring
 
 PICTURES: dict[str, Callable[[], Image.Image]] = {
@@ -23,7 +29,19 @@ PICTURES: dict[str, Callable[[], Image.Image]] = {
     "ring": draw_ring,
     "overlay": draw_overlay,
     "lab": draw_lab,
+    "bodies": draw_bodies,
+    "hair": draw_hair,
+    "levels": draw_levels,
+    "shirts": draw_shirts,
+    "props": draw_props,
+    "block": draw_block,
+    "relative": draw_relative,
+    **{f"motions-{k + 1}": partial(draw_motions, k) for k in range(SHEETS)},
+    "before_and_after": draw_before_and_after,
+    "long_and_short": draw_long_and_short,
+    "one_side": draw_one_side,
 }
+"""By the names of their files; those of spectators need OpenGL."""
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -27,7 +27,7 @@ def make_poses() -> tuple[Simulation, NDArray[np.float32], NDArray[np.float32]]:
         rows=1,
         columns=3,
         occupancy=1.0,
-        streams=32,
+        streams=30,
         spare_streams=2,
         children=0.0,
         old=0.0,

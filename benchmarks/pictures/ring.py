@@ -31,7 +31,7 @@ def make_crowd() -> tuple[Simulation, Stream]:
         rows=6,
         columns=6,
         occupancy=1.0,
-        streams=40,
+        streams=39,
         spare_streams=1,
         history=HISTORY,
         children=0.0,

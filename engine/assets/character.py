@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -34,6 +35,28 @@ class Material:
     double_sided: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """Meshes that only some agents of a crowd have: one choice out of a group.
+
+    Parameters
+    ----------
+    group
+        What is chosen, such as ``hair``. Every agent has one choice of each group, or none.
+    choice
+        Which one this is; all meshes of a choice are drawn together.
+    shares
+        How many of which people have it: ``man``, ``woman``, ``boy``, ``girl``, ``old man``,
+        ``old woman``, or ``everyone`` for all that are not named. If the shares of a group add up
+        to less than 1, the rest of these people have none of it; if to more, they are divided by
+        their sum.
+    """
+
+    group: str
+    choice: str
+    shares: Mapping[str, float] = field(default_factory=lambda: {"everyone": 1.0})
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SkinnedMesh:
     """Triangles of one material, in the bind pose of the character's skeleton.
@@ -54,6 +77,8 @@ class SkinnedMesh:
         (T, 3) uint32, counter-clockwise seen from the front.
     material
         Index into `Character.materials`.
+    variant
+        Whom it is drawn on; on everybody if None.
     """
 
     name: str
@@ -65,6 +90,7 @@ class SkinnedMesh:
     weights: NDArray[np.float32]
     triangles: NDArray[np.uint32]
     material: int = 0
+    variant: Variant | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +104,7 @@ class Character:
     skeleton
         The joints.
     meshes
-        The most detailed level.
+        The most detailed level, with all variants.
     materials
         Referred to by `SkinnedMesh.material`.
     clips
@@ -99,7 +125,7 @@ class Character:
 
     @property
     def triangle_count(self) -> int:
-        """Triangles of the most detailed level."""
+        """Triangles of the most detailed level, of all variants together."""
         return sum(len(mesh.triangles) for mesh in self.meshes)
 
     def clip(self, name: str) -> Clip:

@@ -18,8 +18,7 @@ from .gltf_binding import Binding
 from .gltf_clips import animated_nodes, read_clips, unique_names
 from .gltf_document import GltfDocument
 from .gltf_material import MaterialReader
-from .gltf_mesh import Primitive
-from .gltf_parts import Part, PartReader
+from .gltf_parts import Part, PartReader, Surface
 from .gltf_scene import Scene, read_scene
 from .gltf_transforms import FloatArray, Transforms
 
@@ -140,25 +139,24 @@ def _skeleton(
 
 
 def _meshes(part: Part, place: FloatArray, rows: NDArray[np.int64]) -> list[SkinnedMesh]:
-    """Merge the primitives of a part by material and bring them to the bind pose."""
+    """Merge the primitives of a part by material and variant and bring them to the bind pose."""
     joint_of_index = np.zeros(len(part.nodes), dtype=np.uint16)
     joint_of_index[part.used()] = rows
-    groups: dict[int, list[tuple[str, Primitive]]] = {}
-    for name, material, primitive in part.surfaces:
-        groups.setdefault(material, []).append((name, primitive))
-    return [
-        _merged(members, material, place, joint_of_index) for material, members in groups.items()
-    ]
+    groups: dict[tuple[int, str], list[Surface]] = {}
+    for surface in part.surfaces:
+        variant = surface.variant
+        choice = "" if variant is None else f"{variant.group}/{variant.choice}"
+        groups.setdefault((surface.material, choice), []).append(surface)
+    return [_merged(members, place, joint_of_index) for members in groups.values()]
 
 
 def _merged(
-    members: list[tuple[str, Primitive]],
-    material: int,
+    members: list[Surface],
     place: FloatArray,
     joint_of_index: NDArray[np.uint16],
 ) -> SkinnedMesh:
     """One mesh out of primitives that follow the same joints."""
-    primitives = [primitive for _, primitive in members]
+    primitives = [surface.primitive for surface in members]
     linear = place[:3, :3]
     offsets = np.cumsum([0, *(len(primitive.positions) for primitive in primitives)])
     triangles = np.concatenate(
@@ -176,7 +174,7 @@ def _merged(
     joints = [primitive.joints for primitive in primitives if primitive.joints is not None]
     weights = [primitive.weights for primitive in primitives if primitive.weights is not None]
     return SkinnedMesh(
-        name=members[0][0],
+        name=members[0].name,
         positions=(positions @ linear.T + place[:3, 3]).astype(np.float32),
         normals=normals.astype(np.float32),
         uvs=np.concatenate([primitive.uvs for primitive in primitives]).astype(np.float32),
@@ -184,5 +182,6 @@ def _merged(
         joints=joint_of_index[np.concatenate(joints)],
         weights=np.concatenate(weights).astype(np.float32),
         triangles=np.ascontiguousarray(triangles, dtype=np.uint32),
-        material=material,
+        material=members[0].material,
+        variant=members[0].variant,
     )

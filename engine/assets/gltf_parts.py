@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from .character import Variant
 from .gltf_accessor import read_floats
 from .gltf_binding import Hold
 from .gltf_document import GltfDocument
@@ -14,6 +15,17 @@ from .gltf_material import MaterialReader
 from .gltf_mesh import Primitive, read_primitive
 from .gltf_scene import Scene
 from .gltf_transforms import FloatArray
+from .variants import read_variant
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surface:
+    """A primitive, the node's name, the row of its material, and whom it is drawn on."""
+
+    name: str
+    material: int
+    primitive: Primitive
+    variant: Variant | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -29,13 +41,13 @@ class Part:
     skinned
         False for a rigid mesh.
     surfaces
-        ``(name, row of the material, primitive)`` of each primitive; all have influences.
+        The primitives; all have influences.
     """
 
     nodes: NDArray[np.int64]
     inverse_binds: FloatArray
     skinned: bool
-    surfaces: list[tuple[str, int, Primitive]] = field(default_factory=list)
+    surfaces: list[Surface] = field(default_factory=list)
 
     def used(self) -> NDArray[np.int64]:
         """Which of the K nodes weigh on some vertex."""
@@ -67,7 +79,7 @@ class Part:
     def _influences(self) -> list[tuple[FloatArray, NDArray[np.int64], FloatArray]]:
         return [
             (primitive.positions, primitive.joints, primitive.weights)
-            for _, _, primitive in self.surfaces
+            for primitive in (surface.primitive for surface in self.surfaces)
             if primitive.joints is not None and primitive.weights is not None
         ]
 
@@ -127,14 +139,15 @@ class PartReader:
             skin = fields.index("skin", len(skins))
             if mesh is None:
                 continue
+            variant = read_variant(fields) or read_variant(self._document.items("meshes")[mesh])
             for material, primitive in self._mesh(mesh):
                 name = fields.text("name") or self._mesh_name(mesh)
                 if skin is not None and primitive.joints is not None:
                     self._check_joints(mesh, skins[skin], primitive)
-                    skins[skin].surfaces.append((name, material, primitive))
+                    skins[skin].surfaces.append(Surface(name, material, primitive, variant))
                 else:
                     part = rigid.setdefault(node, Part(np.array([node]), np.eye(4)[None], False))
-                    part.surfaces.append((name, material, _rigid(primitive)))
+                    part.surfaces.append(Surface(name, material, _rigid(primitive), variant))
         skinned = [part for part in skins.values() if part.surfaces]
         joints = {node for part in skinned for node in part.nodes.tolist()}
         return skinned + self._kept(rigid, joints | animated if joints else set(rigid))
@@ -148,7 +161,7 @@ class PartReader:
         for node, part in rigid.items():
             if node not in moved:
                 self._notes.append(
-                    f"Mesh '{part.surfaces[0][0]}' is neither skinned nor below a joint and is "
+                    f"Mesh '{part.surfaces[0].name}' is neither skinned nor below a joint and is "
                     "left out."
                 )
         return [part for node, part in rigid.items() if node in moved]

@@ -21,6 +21,7 @@ from ..animation.clip import Clip
 from ..animation.skeleton import Skeleton
 from .character import Character, Material, SkinnedMesh
 from .levels import level_name
+from .variants import variant_extras
 
 THINNING = 0.003
 """Radians and metres by which a key may lie off the way between its neighbours to be left out."""
@@ -129,7 +130,8 @@ def character_to_glb(character: Character, *, compact: bool = False) -> bytes:
         Its meshes get one glTF mesh and node each, with one skin per level. Colours are stored as
         normalised bytes where that loses nothing above 1, joints as bytes where they fit.
         Animation channels are left out where a clip keeps a joint at its rest transform; clips
-        that do not loop get ``extras: {"looping": false}``.
+        that do not loop get ``extras: {"looping": false}``, meshes of variants theirs; see
+        `variants`.
     compact
         Whether turns are stored as normalised 16-bit integers (off by 0.002 degrees at most), and
         of channels that lose less than `THINNING` by it only every second key, in clips of
@@ -153,7 +155,10 @@ def character_to_glb(character: Character, *, compact: bool = False) -> bytes:
         for mesh in members:
             name = level_name(mesh.name, level)
             roots.append(len(nodes))
-            nodes.append({"name": name, "mesh": len(meshes), "skin": level})
+            node = {"name": name, "mesh": len(meshes), "skin": level}
+            if mesh.variant is not None:
+                node["extras"] = variant_extras(mesh.variant)
+            nodes.append(node)
             meshes.append({"name": name, "primitives": [_primitive(buffer, mesh)]})
     document["scenes"] = [{"name": character.name, "nodes": roots}]
     document["nodes"] = nodes

@@ -22,6 +22,7 @@ from .character import Character, Material, SkinnedMesh
 from .edge_collapse import collapse_edges
 from .levels import level_name
 from .simplify_surface import Surface, connected, join_surface
+from .variants import one_look
 
 LEVEL_TRIANGLES = (800, 200)
 """Triangles of the second and third mesh: what is still seen at 110 and at 42 pixels."""
@@ -41,7 +42,8 @@ def with_lower_levels(character: Character, targets: Sequence[int] = LEVEL_TRIAN
     """Give a character coarser meshes, unless it has some.
 
     Level k + 1 has about ``targets[k]`` triangles; where the level before has no more than that, or
-    where nothing usable is left, it is that level again. Pictures are sampled into vertex colours,
+    where nothing usable is left, it is that level again. Variants are reduced apart, and the
+    targets are for one look. Pictures are sampled into vertex colours,
     and the meshes refer to copies of their materials without picture, which are appended. A
     character with as few triangles as the last target comes back as it is.
 
@@ -59,7 +61,11 @@ def with_lower_levels(character: Character, targets: Sequence[int] = LEVEL_TRIAN
     """
     if any(target < 4 for target in targets) or list(targets) != sorted(set(targets))[::-1]:
         raise ValueError(f"targets is {tuple(targets)}, expected falling numbers of at least 4")
-    if character.lower_levels or not targets or character.triangle_count <= targets[-1]:
+    if character.lower_levels or not targets:
+        return character
+    if any(mesh.variant is not None for mesh in character.meshes):
+        return _with_lower_variants(character, targets)
+    if character.triangle_count <= targets[-1]:
         return character
     surface = join_surface(character)
     materials, plain = _plain_materials(character.materials)
@@ -74,6 +80,32 @@ def with_lower_levels(character: Character, targets: Sequence[int] = LEVEL_TRIAN
     if all(level is character.meshes for level in levels):
         return character
     return replace(character, materials=materials, lower_levels=tuple(levels[1:]))
+
+
+def _with_lower_variants(character: Character, targets: Sequence[int]) -> Character:
+    """`with_lower_levels` for every variant by itself, each with its share of the targets."""
+    look = one_look(character).triangle_count
+    pieces: dict[tuple[str, str], list[SkinnedMesh]] = {}
+    for mesh in character.meshes:
+        variant = mesh.variant
+        key = ("", "") if variant is None else (variant.group, variant.choice)
+        pieces.setdefault(key, []).append(mesh)
+    materials = character.materials
+    levels: list[list[SkinnedMesh]] = [[] for _ in targets]
+    for meshes in pieces.values():
+        count = sum(len(mesh.triangles) for mesh in meshes)
+        share = min(count / max(look, 1), 1.0)
+        wanted = sorted({max(round(target * share), 4) for target in targets}, reverse=True)
+        plain = tuple(replace(mesh, variant=None) for mesh in meshes)
+        made = with_lower_levels(replace(character, meshes=plain), wanted)
+        # Copies of materials are always the same, so the longest list serves all pieces.
+        materials = max(materials, made.materials, key=len)
+        found = (plain, *made.lower_levels)
+        for number, level in enumerate(levels, start=1):
+            coarse = found[min(number, len(found) - 1)]
+            level += [replace(mesh, variant=meshes[0].variant) for mesh in coarse]
+    lower = tuple(tuple(level) for level in levels)
+    return replace(character, materials=materials, lower_levels=lower)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

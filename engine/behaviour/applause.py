@@ -163,7 +163,6 @@ class Applause:
         self._earlier = np.zeros(count, np.float32)  # claps felt at the end of the last clapping
         self._end = np.zeros(count, np.float64)  # of that
         self._wake = np.full(count, np.inf)  # from which on a resting agent is idle
-        self._resting = np.zeros(0, np.int64)
         self._look = 0.0  # when to look whose rest is over
         self._clapping_of = np.zeros(hearing.count)
         self._loudest = np.zeros(hearing.count)  # share heard lately
@@ -197,6 +196,29 @@ class Applause:
         self._since[ids] = np.where(values < 0.0, self._now, seen)  # nobody refuses too late
         self._wake_up(np.unique(ids[self.state[ids] == RESTING]))
         self._highest = (max(self._bound(), float(values.max())), seen)
+
+    def cue_crowd(
+        self, who: NDArray[np.bool_], benefit: NDArray[np.float32] | float, *, refuse: bool = False
+    ) -> None:
+        """`cue` for much of the crowd at once.
+
+        Parameters
+        ----------
+        who
+            (N,) whom it concerns.
+        benefit
+            One for all or (N,), finite; of those whom it doesn't concern nothing is read.
+        refuse
+            Whether it is below 0, for all of them.
+        """
+        who = who & self.hearing.present
+        if not who.any():
+            return
+        seen = self._now + self.rates.reaction
+        np.copyto(self._benefit, benefit, where=who, casting="same_kind")
+        np.copyto(self._since, self._now if refuse else seen, where=who)
+        self._wake_up(np.flatnonzero(who & (self.state == RESTING)))
+        self._highest = (max(self._bound(), float(np.max(benefit))), seen)
 
     def start(self, agents: int | ArrayLike) -> None:
         """Let agents clap from now on, whatever they think of it; absent ones don't."""
@@ -275,7 +297,8 @@ class Applause:
         if len(self.active) == 0:
             return self.active
         parts = 1 + len(self.active) // _BATCH
-        ids = self.active[int(self._rng.integers(parts)) :: parts]
+        part, count = int(self._rng.integers(parts)), len(self.active)
+        ids = self.active[part * count // parts : (part + 1) * count // parts]
         chance = -np.expm1(-np.float32(dt * parts) * self._stop_hazard(ids, clapping))
         tired: NDArray[np.int64] = ids[self._rng.random(len(ids), np.float32) < chance]
         is_lonely = (self._clapping_of > 0) & (self._answered < self._now)
@@ -330,11 +353,11 @@ class Applause:
         self.state[ids] = CLAPPING
         self._begin[ids] = self._now
         self._clapping_of += self.hearing.counts(ids)
-        self.active = np.flatnonzero(self.state == CLAPPING)
+        self._find_active()
 
     def _stop_clapping(self, ids: NDArray[np.int64]) -> None:
         self.state[ids] = RESTING
-        self.active = np.flatnonzero(self.state == CLAPPING)
+        self._find_active()
         self._clapping_of -= self.hearing.counts(ids)
         claps = (self._now - self._begin[ids]).astype(np.float32) * self._rate[ids]
         self._earlier[ids] = self._earlier_claps(ids) + np.float32(self.rates.weariness) * claps
@@ -343,17 +366,18 @@ class Applause:
         rest = self._rng.standard_exponential(len(ids)) * (1.0 - _LEAST_REST) + _LEAST_REST
         rest *= self.rates.rest / (1.0 + self.rates.eagerness * np.maximum(self.ground[ids], 0.0))
         self._wake[ids] = self._now + rest
-        self._resting = np.concatenate([self._resting, ids])
+
+    def _find_active(self) -> None:
+        self.active = np.flatnonzero(self.state == CLAPPING)
 
     def _wake_up(self, ids: NDArray[np.int64]) -> None:
         self.state[ids] = IDLE
         self._wake[ids] = np.inf
 
     def _end_rests(self) -> None:
-        if len(self._resting) == 0 or self._now < self._look:
+        if self._now < self._look:
             return
         self._look = self._now + _LOOK_EVERY
-        self._resting = np.unique(self._resting[self.state[self._resting] == RESTING])
-        is_over = self._wake[self._resting] <= self._now
-        self._wake_up(self._resting[is_over])
-        self._resting = self._resting[~is_over]
+        over = np.flatnonzero(self._wake <= self._now)
+        if len(over):
+            self._wake_up(over)

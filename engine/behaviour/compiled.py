@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +9,16 @@ from numpy.typing import NDArray
 
 from ..crowd.motions import MotionLibrary, Role
 from ..streams.pool import POSE_RATE
+from .choices import Choices
+from .clip_names import is_seated, matching, other_form
 from .events import KINDS
+from .looks import KEEP, Look, Looks
 from .table import PIECE, POSTURES, RELATIONS, BehaviourTable, Response, Rule, State, Variant
 
-KEEP = -1
-"""A motion or channel value that leaves things as they are."""
-_SEATED = re.compile(r"^sit", re.IGNORECASE)
+WAKING = frozenset(
+    {"clapping_wanted", "wave_wanted", "spoken_to", "player_near", "hug_first", "hug_second"}
+)
+"""Signals whose changes wake agents (`company`, `hugs`), so that nobody has to look for them."""
 _REST = "rest"
 """The value of the arms channel, and the first of each list, that means nothing special."""
 
@@ -40,28 +43,6 @@ class CompiledRule:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Look:
-    """How a state can look.
-
-    Parameters
-    ----------
-    motion
-        (L,) int16 motions of the library; -1 keeps what is shown.
-    variant
-        (L,) int16 which variant each is of.
-    chance
-        (L,) float64 1 / effort, shared among the motions of a variant.
-    excitement
-        (L,) float32 from which on each is used.
-    """
-
-    motion: NDArray[np.int16]
-    variant: NDArray[np.int16]
-    chance: NDArray[np.float64]
-    excitement: NDArray[np.float32]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class CompiledTable:
     """A table that a crowd runs on; S states.
 
@@ -71,8 +52,10 @@ class CompiledTable:
         As written.
     names, machine, starts
         Names of the states, the machine of each, and the first state of each machine.
-    rules, looks
-        By state: the ways out and the looks.
+    rules, choices
+        By state the ways out, and what takes one of them.
+    looks
+        By state: how it can look.
     pieces
         (S, 2) least and most pieces of a stay.
     limit, leave_to
@@ -89,6 +72,10 @@ class CompiledTable:
         (S, kinds, relations) bool: no rule leads away while such an event moves an agent.
     seated
         (K,) bool of the library's motions.
+    other_form
+        (K,) int16 the same motion in the other posture, or itself.
+    takes_any_posture
+        (S,) bool: a state is shown in the posture that the agent has.
     calm
         For each posture the motions of someone at rest.
     responses
@@ -102,7 +89,8 @@ class CompiledTable:
     machine: NDArray[np.int8]
     starts: tuple[int, ...]
     rules: tuple[tuple[CompiledRule, ...], ...]
-    looks: tuple[Look, ...]
+    choices: Choices
+    looks: Looks
     pieces: NDArray[np.int32]
     limit: NDArray[np.int32]
     leave_to: NDArray[np.int16]
@@ -116,9 +104,16 @@ class CompiledTable:
     wakes_rapidly: NDArray[np.bool_]
     sleeps: NDArray[np.bool_]
     seated: NDArray[np.bool_]
+    other_form: NDArray[np.int16]
+    takes_any_posture: NDArray[np.bool_]
     calm: tuple[NDArray[np.int16], NDArray[np.int16]]
     responses: dict[tuple[int, int], Response]
     notes: tuple[str, ...]
+
+    def machine_number(self, name: str) -> int:
+        """Index of a machine; -1 if the table hasn't got it."""
+        machines = self.table.machines
+        return machines.index(name) if name in machines else -1
 
     def number(self, name: str) -> int:
         """Index of a state; ValueError if there is none of that name."""
@@ -140,7 +135,7 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
     states = table.states
     names = tuple(state.name for state in states)
     index = {name: k for k, name in enumerate(names)}
-    seated = np.array([bool(_SEATED.match(name)) for name in library.names], np.bool_)
+    seated = np.array([is_seated(name) for name in library.names], np.bool_)
     notes: list[str] = []
     looks = tuple(_cast(state, library, seated, notes) for state in states)
     rules = tuple(
@@ -154,7 +149,7 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
             if rule.target == k:
                 continue
             if rule.pairs is None:
-                awake[k] |= not rule.calm
+                awake[k] |= not (rule.calm or any(name in WAKING for name, _ in rule.signals))
                 continue
             pairs = rule.pairs
             awake[k] |= pairs
@@ -172,6 +167,12 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
         )
         for state in states
     ]
+    is_bridge = np.array(
+        [
+            state.pieces == (1, 1) and state.role is None and bool((look.motion == KEEP).all())
+            for state, look in zip(states, looks, strict=True)
+        ]
+    ) & np.array([state.machine == table.machines[0] for state in states])
     return CompiledTable(
         table=table,
         names=names,
@@ -181,7 +182,8 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
             for machine in table.machines
         ),
         rules=rules,
-        looks=looks,
+        choices=Choices(rules),
+        looks=Looks(looks),
         pieces=np.array([state.pieces for state in states], np.int32),
         limit=np.array([state.limit for state in states], np.int32) * PIECE,
         leave_to=np.array([index[name] for name in leave], np.int16),
@@ -190,17 +192,13 @@ def compile_table(table: BehaviourTable, library: MotionLibrary) -> CompiledTabl
         head=_numbers([state.head for state in states], head),
         arms_names=arms,
         head_names=head,
-        is_bridge=np.array(
-            [
-                state.pieces == (1, 1) and state.role is None and (look.motion == KEEP).all()
-                for state, look in zip(states, looks, strict=True)
-            ]
-        )
-        & np.array([state.machine == table.machines[0] for state in states]),
+        is_bridge=is_bridge,
         wakes=wakes,
         wakes_rapidly=rapid,
         sleeps=~awake,
         seated=seated,
+        other_form=other_form(library.names),
+        takes_any_posture=np.array([state.posture is None for state in states]) & ~is_bridge,
         calm=(_calm(library, seated, True), _calm(library, seated, False)),
         responses={
             (KINDS.index(kind), RELATIONS.index(relation)): response
@@ -252,7 +250,7 @@ def _cast(
     chance: list[float] = []
     excitement: list[float] = []
     for number, one in enumerate(state.variants or (Variant(()),)):
-        found = _matching(one, library)
+        found = matching(one, state, library.names)
         if not found:
             found = [_stand_in(state, number, library, seated)]
             if one.clips:
@@ -269,16 +267,6 @@ def _cast(
         np.array(chance),
         np.array(excitement, np.float32),
     )
-
-
-def _matching(variant: Variant, library: MotionLibrary) -> list[int]:
-    if isinstance(variant.clips, str):
-        words = re.compile(variant.clips, re.IGNORECASE)
-        return [k for k, name in enumerate(library.names) if words.fullmatch(name)]
-    for name in variant.clips:
-        if name in library.names:
-            return [library.names.index(name)]
-    return []
 
 
 def _stand_in(state: State, number: int, library: MotionLibrary, seated: NDArray[np.bool_]) -> int:

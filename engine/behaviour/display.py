@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...components.behaviour import Behaviour
-from .compiled import KEEP, CompiledTable
+from .compiled import CompiledTable
 from .guidance import ARMS, BODY, HEAD, POSTURE, Guidance, Priority
+from .looks import KEEP
 from .table import SEATED
 
 
@@ -39,11 +40,15 @@ def motions_to_show(
     """
     b = behaviour
     motion = np.where(b.motion[0, agents] == KEEP, wanted[agents], b.motion[0, agents])
-    at_rest = b.arms[agents] == 0
-    if len(b.state) > 1:
-        head = b.motion[1, agents]
-        fits = at_rest & (head != KEEP)
-        fits &= compiled.seated[head] == (b.posture[agents] == SEATED)
+    sits = b.posture[agents] == SEATED
+    turns = compiled.takes_any_posture[b.state[0, agents]] & (compiled.seated[motion] != sits)
+    motion = np.where(turns, compiled.other_form[motion], motion)
+    at_rest = (b.arms[agents] == 0) & ~compiled.takes_any_posture[b.state[0, agents]]
+    head_machine = compiled.machine_number("head")
+    if head_machine > 0:
+        head = b.motion[head_machine, agents]
+        head = np.where(compiled.seated[head] == sits, head, compiled.other_form[head])
+        fits = at_rest & (b.motion[head_machine, agents] != KEEP) & (compiled.seated[head] == sits)
         motion = np.where(fits, head, motion)
     told = guidance.demanded(agents)
     if told.any():
@@ -77,9 +82,9 @@ def _heard(
     behaviour: Behaviour, agents: NDArray[np.int64], priority: Priority
 ) -> NDArray[np.bool_]:
     """Whose orders of a priority count now: events drown scripts."""
-    if priority is Priority.GUIDED:
-        return np.ones(len(agents), np.bool_)
-    return ~behaviour.reacting[agents]
+    if priority is Priority.SCRIPTED:
+        return ~behaviour.reacting[agents]
+    return np.ones(len(agents), np.bool_)
 
 
 def _is_banned(

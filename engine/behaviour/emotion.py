@@ -70,7 +70,9 @@ def set_embarrassment(emotion: Emotion, level: float) -> None:
     emotion.embarrassment[:] = emotion.rest_embarrassment
 
 
-def relax(emotion: Emotion, tick: int, tiring: NDArray[np.bool_]) -> None:
+def relax(
+    emotion: Emotion, tick: int, tiring: NDArray[np.bool_], *, contagious: bool = False
+) -> None:
     """Let feelings return to where they rest; a tenth of the crowd at each pose tick.
 
     ``dv/dt = -g (v - b)`` with the half-lives above, exact for the 10 pose ticks between an agent's
@@ -84,6 +86,9 @@ def relax(emotion: Emotion, tick: int, tiring: NDArray[np.bool_]) -> None:
         Pose tick; says whose turn it is.
     tiring
         (N,) who gets tired.
+    contagious
+        Whether mood and excitement pass from neighbour to neighbour, and fade there
+        (`contagion.EmotionContagion`), so that they are left alone here.
     """
     count = len(emotion.mood)
     turn = tick % PIECE
@@ -95,6 +100,8 @@ def relax(emotion: Emotion, tick: int, tiring: NDArray[np.bool_]) -> None:
         (emotion.mood, None, MOOD_HALF_LIFE),
         (emotion.fatigue, None, FATIGUE_HALF_LIFE),
     ):
+        if contagious and (column is emotion.excitement or column is emotion.mood):
+            continue
         part, left = column[who], np.float32(0.5 ** (seconds / half_life))
         if rest is None:
             part *= left

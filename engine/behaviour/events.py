@@ -12,8 +12,10 @@ from ...components.team import MOST_SIDES
 KINDS = (
     *("goal", "near_miss", "foul", "card", "referee_decision", "substitution", "corner"),
     *("kick_off", "half_time", "final_whistle", "ball_in_crowd", "anthem", "player_close", "cue"),
+    "mexican_wave",
 )
-"""What can happen; ``cue`` is whatever asks for applause: the end of a song, a point made."""
+"""What can happen; ``cue`` is whatever asks for applause: the end of a song, a point made.
+``mexican_wave``: some fifty people near its place get up for one."""
 
 WEIGHTS = {
     "goal": 1.0,
@@ -30,12 +32,13 @@ WEIGHTS = {
     "anthem": 0.6,
     "player_close": 0.5,
     "cue": 0.6,
+    "mexican_wave": 0.2,
 }
 """How impressive each kind is when nobody says."""
 
 SIDED = frozenset({"goal", "near_miss", "foul", "card", "substitution", "corner"})
 """Kinds that are always of a side: it scored, just missed, fouled, was shown the card, ..."""
-PLACED = frozenset({"ball_in_crowd", "player_close"})
+PLACED = frozenset({"ball_in_crowd", "player_close", "mexican_wave"})
 """Kinds that only those near their place notice."""
 
 
@@ -116,12 +119,20 @@ class BallHit(Event):
 
 
 class EventQueue:
-    """Events that wait for their time, in its order, and else in that in which they were sent."""
+    """Events that wait for their time, in its order, and else in that in which they were sent.
 
-    __slots__ = ("_pending",)
+
+    Attributes
+    ----------
+    heard
+        What was taken last: the events of the last pose tick.
+    """
+
+    __slots__ = ("_pending", "heard")
 
     def __init__(self) -> None:
         self._pending: list[Event] = []
+        self.heard: tuple[Event, ...] = ()
 
     def __len__(self) -> int:
         """How many wait."""
@@ -142,11 +153,14 @@ class EventQueue:
     def take(self, now: float = math.inf) -> list[Event]:
         """The events due by `now`, seconds of the simulation; the others go on waiting."""
         if not self._pending:
+            self.heard = ()
             return []
         is_due = [event.time is None or event.time <= now for event in self._pending]
         due = [event for event, is_now in zip(self._pending, is_due, strict=True) if is_now]
         self._pending = [e for e, is_now in zip(self._pending, is_due, strict=True) if not is_now]
-        return sorted(due, key=lambda event: now if event.time is None else event.time)
+        due.sort(key=lambda event: now if event.time is None else event.time)
+        self.heard = tuple(due)
+        return due
 
 
 def _is_number(value: object) -> bool:

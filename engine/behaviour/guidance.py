@@ -28,10 +28,11 @@ NOTHING = -1
 
 
 class Priority(IntEnum):
-    """Orders that events override, and orders that override everything."""
+    """Orders that events override, orders that override everything, and what a body has to do."""
 
     SCRIPTED = 0
     GUIDED = 1
+    BOUND = 2
 
 
 @dataclass(slots=True, eq=False)
@@ -82,11 +83,11 @@ class Guidance:
     Attributes
     ----------
     motion
-        (2, 4, N) int16 motion demanded, by priority and channel; -1 none.
+        (3, 4, N) int16 motion demanded, by priority and channel; -1 none.
     value
-        (2, 4, N) int8 what the channel's column says.
+        (3, 4, N) int8 what the channel's column says.
     forbidden
-        (2, N) int64 bits of the states that must not be shown.
+        (3, N) int64 bits of the states that must not be shown.
     """
 
     def __init__(self, agents: int, states: int, rng: np.random.Generator) -> None:
@@ -113,6 +114,26 @@ class Guidance:
         if any(other is order for other in self.orders):
             self.orders = [other for other in self.orders if other is not order]
             self._changed.append(order.agents)
+
+    def revise(self, order: Order, agents: NDArray[np.int64], motions: NDArray[np.int16]) -> None:
+        """Change to whom an order speaks, ascending ids (K,), and which motions (K,) it demands.
+
+        It keeps its place among the others, and is withdrawn while it speaks to nobody.
+        """
+        assert order.motions is not None
+        before, after = _among(order.agents, agents), _among(agents, order.agents)
+        same = np.zeros(len(agents), np.bool_)
+        same[after] = order.motions[before] == motions[after]
+        for some in (order.agents[~before], agents[~same]):
+            if len(some):
+                self._changed.append(some)
+        order.agents, order.motions = agents, motions
+        listed = any(other is order for other in self.orders)
+        if listed and not len(agents):
+            self.orders = [other for other in self.orders if other is not order]
+        elif len(agents) and not listed:
+            order.end = None
+            self.orders.append(order)
 
     def step(self, tick: int, behaviour: Behaviour) -> NDArray[np.int64]:
         """Begin and end orders at pose tick `tick`; ids of whom a change concerns, ascending.
@@ -300,3 +321,13 @@ def _forbidden(name: str, compiled: CompiledTable) -> NDArray[np.bool_]:
 
 def _bits(mask: NDArray[np.bool_]) -> np.int64:
     return np.int64(sum(1 << int(k) for k in np.flatnonzero(mask)))
+
+
+def _among(ids: NDArray[np.int64], others: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """(K,) which of some ids are among others; both ascend."""
+    if not len(others):
+        return np.zeros(len(ids), np.bool_)
+    found: NDArray[np.bool_] = (
+        others[np.minimum(np.searchsorted(others, ids), len(others) - 1)] == ids
+    )
+    return found

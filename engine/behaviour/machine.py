@@ -7,14 +7,16 @@ can be brought to the mix of states that it has in the long run before the first
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...components.behaviour import Behaviour
-from .compiled import KEEP, CompiledRule, CompiledTable
+from .choices import CALM, Choice
+from .compiled import CompiledTable
+from .looks import KEEP
 from .table import PIECE, Relation
 
 Columns = Mapping[str, NDArray[Any]]
@@ -31,7 +33,8 @@ def begin(
     """Put everyone into the first state of each machine, to be left at pose tick 1."""
     for machine, start in enumerate(compiled.starts):
         agents = np.arange(behaviour.state.shape[1])
-        _enter(compiled, behaviour, machine, agents, start, agents * 0, columns, rng)
+        at, when = np.full(len(agents), start, np.int16), np.zeros(len(agents), np.int32)
+        _enter(compiled, behaviour, machine, agents, at, when, columns, rng)
     behaviour.until[:] = 1
 
 
@@ -42,8 +45,10 @@ def settle(
 
     Afterwards stays end after pose tick 0, and each began before.
     """
-    behaviour.until[:] = 1 - _SETTLING
-    behaviour.entered[:] = 1 - _SETTLING - PIECE
+    agents = np.arange(behaviour.state.shape[1])
+    for machine in range(len(behaviour.until)):
+        behaviour.until[machine] = _beat(machine, agents) - _SETTLING
+    behaviour.entered[:] = behaviour.until - PIECE
     for machine, start in enumerate(compiled.starts):
         behaviour.state[machine] = start
         late = np.arange(behaviour.state.shape[1])
@@ -155,117 +160,112 @@ def _move_on(
     state = b.state[machine].take(agents)
     target = b.ahead[machine].take(agents)
     length = np.zeros(len(agents), np.float32)
-    free = np.where(target < 0, state, np.int16(len(compiled.names)))
-    for number in _present(free, len(compiled.names)):
-        k = np.flatnonzero(free == number)
-        if len(k):
-            who, now = agents.take(k), when.take(k)
-            target[k], length[k], stay = _choose(
-                compiled, b, machine, number, who, now, columns, rng
-            )
-            stays = target[k] == number
-            if stays.any():
-                who, now, stay = who[stays], now[stays], stay[stays]
-                ready = _awake(compiled, b, who, number, now + stay)
-                end = b.entered[machine].take(who) + compiled.limit[number]
-                b.until[machine][who] = np.minimum(ready, end)
+    free = np.flatnonzero(target < 0)
+    if len(free):
+        who, now, at = agents.take(free), when.take(free), state.take(free)
+        choice, stay = _choose(compiled, b, machine, at, who, now, columns, rng)
+        target[free], length[free] = choice.target, choice.blend
+        stays = np.flatnonzero(choice.target == at)
+        who, now, at = who.take(stays), now.take(stays), at.take(stays)
+        ready = _awake(compiled, b, who, at, now + stay.take(stays))
+        end = b.entered[machine].take(who) + compiled.limit.take(at)
+        b.until[machine][who] = np.minimum(ready, end)
     changes = np.flatnonzero(target != state)
     moving: NDArray[np.int64] = agents.take(changes)
-    to, at = target.take(changes), when.take(changes)
-    if blend is not None and machine == 0:
-        length = length.take(changes)
-        blend[moving] = np.where(length > 0, length, blend.take(moving))
-    for number in _present(to, len(compiled.names)):
-        k = np.flatnonzero(to == number)
-        _enter(compiled, b, machine, moving.take(k), number, at.take(k), columns, rng)
+    if len(moving):
+        if blend is not None and machine == 0:
+            length = length.take(changes)
+            blend[moving] = np.where(length > 0, length, blend.take(moving))
+        _enter(compiled, b, machine, moving, target.take(changes), when.take(changes), columns, rng)
     return moving
 
 
-def _present(states: NDArray[np.int16], count: int) -> list[int]:
-    """The states below `count` that occur, ascending."""
-    return [int(k) for k in np.flatnonzero(np.bincount(states, minlength=count)[:count])]
+def _beat(machine: int, agents: NDArray[np.int64]) -> NDArray[np.int32]:
+    """(K,) pose tick, 0 to 9, of each ten at which an agent's stays end if nothing rapid happens.
+
+    A machine's work is cheaper at few ticks for many agents than at all for few; so there are three
+    ticks for bodies, and one, apart from those, for whatever else people have.
+    """
+    if machine:
+        return np.full(len(agents), 8, np.int32)
+    beat = agents.astype(np.int32)
+    beat %= np.int32(3)
+    beat *= np.int32(3)
+    return beat
 
 
 def _awake(
     compiled: CompiledTable,
     behaviour: Behaviour,
     agents: NDArray[np.int64],
-    state: int,
-    when: NDArray[Any],
-) -> NDArray[Any]:
+    state: NDArray[np.int16],
+    when: NDArray[np.int32],
+) -> NDArray[np.int32]:
     """When to look again at agents that are to be looked at at `when`, which may be pieces later.
 
     As long as an event moves an agent in a state that no rule leaves under it, there is nothing to
-    decide.
+    decide. Changes `when`.
     """
-    sleeps = compiled.sleeps[state]
-    if not sleeps.any():
-        return when
     left = behaviour.stirred_until.take(agents) - when
-    moved = np.flatnonzero(left > 0)
+    moved, at = _moved(behaviour, agents, state, left > 0)
+    if len(moved):
+        sleeping = moved[compiled.sleeps.ravel().take(at)]
+        when[sleeping] += -(-left.take(sleeping) // np.int32(PIECE)) * np.int32(PIECE)
+    return when
+
+
+def _moved(
+    behaviour: Behaviour,
+    agents: NDArray[np.int64],
+    state: NDArray[np.int16],
+    will_be: NDArray[np.bool_],
+) -> tuple[NDArray[np.int64], NDArray[np.intp]]:
+    """Which of some agents (K,) `will_be` moved, and their places in (S, kinds, relations).
+
+    Whoever no event ever moved is not among them.
+    """
+    moved = np.flatnonzero(will_be)
     if not len(moved):
-        return when
-    who = agents.take(moved)
-    sleeping = moved[sleeps[behaviour.event.take(who), behaviour.relation.take(who)]]
-    ready: NDArray[Any] = when.copy()
-    ready[sleeping] += -(-left[sleeping] // PIECE) * PIECE
-    return ready
+        return moved, moved
+    pair = _pairs(behaviour, agents.take(moved))
+    if pair.min() < 0:
+        moved, pair = moved[pair >= 0], pair[pair >= 0]
+    pair += state.take(moved).astype(np.intp) * CALM
+    return moved, pair
+
+
+def _pairs(behaviour: Behaviour, agents: NDArray[np.int64]) -> NDArray[np.intp]:
+    """(K,) kind and relation of the events that moved agents as one number, below 0 if none did."""
+    pair = behaviour.event.take(agents).astype(np.intp)
+    pair *= len(Relation)
+    pair += behaviour.relation.take(agents)
+    return pair
 
 
 def _choose(
     compiled: CompiledTable,
     behaviour: Behaviour,
     machine: int,
-    state: int,
+    state: NDArray[np.int16],
     agents: NDArray[np.int64],
     when: NDArray[np.int32],
     columns: Columns,
     rng: np.random.Generator,
-) -> tuple[NDArray[np.int16], NDArray[np.float32], NDArray[np.int32]]:
-    """Where agents of one state go, blends, and how long those stay who do, all in pose ticks."""
-    rules = compiled.rules[state]
+) -> tuple[Choice, NDArray[np.int32]]:
+    """Where agents go, and how many pose ticks those stay who do."""
     since = when - behaviour.entered[machine].take(agents)
     asked = _Asked(behaviour, agents, since, when, columns)
-    is_open = [(rule, good) for rule in rules if (good := asked.meets(rule)) is not None]
-    targets = np.full(len(agents), state, np.int16)
-    blends = np.zeros(len(agents), np.float32)
-    stays = np.full(len(agents), PIECE, np.int32)
-    chosen: list[slice | NDArray[np.int64]] = []
-    if len(is_open) == 1:
-        good = is_open[0][1]
-        chosen = [slice(None) if good.all() else np.flatnonzero(good)]
-    elif is_open:
-        edges = np.empty((len(is_open), len(agents)), np.float32)
-        total = np.zeros(len(agents), np.float32)
-        for row, (rule, good) in zip(edges, is_open, strict=True):
-            np.multiply(good, np.float32(1.0 / rule.effort), out=row)
-            row += total
-            total = row
-        draw = rng.random(len(agents), np.float32) * edges[-1]
-        np.minimum(draw, np.nextafter(edges[-1], np.float32(0.0)), out=draw)
-        pick = _count_passed(edges, draw)
-        chosen = [np.flatnonzero(pick == number) for number in range(len(is_open))]
-    for (rule, _), k in zip(is_open, chosen, strict=True):
-        targets[k], blends[k] = rule.target, rule.blend
-        if rule.target == state and rule.pieces != (1, 1):
-            some = stays[k]
-            stays[k] = PIECE * rng.integers(rule.pieces[0], rule.pieces[1] + 1, len(some))
-    over = since >= compiled.limit[state]
-    if over.any():
-        over &= targets == state
-        targets[over] = compiled.leave_to[state]
-        blends[over] = LIMIT_BLEND
-    return targets, blends, stays
-
-
-def _count_passed(
-    edges: NDArray[Any] | Sequence[Any], draw: NDArray[np.floating[Any]]
-) -> NDArray[np.int8]:
-    """(K,) how many of some ascending edges, numbers or (K,) each, lie at or below a draw (K,)."""
-    passed = np.zeros(len(draw), np.int8)
-    for edge in edges:
-        passed += edge <= draw
-    return passed
+    choice = compiled.choices.draw(state, asked.pair, asked.number, rng)
+    stay = choice.least
+    several = np.flatnonzero((choice.most > stay) & (choice.target == state))
+    if len(several):
+        stay[several] = rng.integers(stay[several], choice.most[several] + 1)
+    stay *= np.int32(PIECE)
+    over = np.flatnonzero((since >= compiled.limit.take(state)) & (choice.target == state))
+    if len(over):
+        choice.target[over] = compiled.leave_to.take(state.take(over))
+        choice.blend[over] = LIMIT_BLEND
+    return choice, stay
 
 
 class _Asked:
@@ -283,38 +283,11 @@ class _Asked:
         self.behaviour = behaviour
         self.active = behaviour.stirred_from.take(agents) <= when
         self.active &= behaviour.stirred_until.take(agents) > when
-        self.any_active = bool(self.active.any())
-        if self.any_active:
-            # Both as one number, by which the pairs of rules are looked up.
-            self.pair = behaviour.event.take(agents).astype(np.intp)
-            self.pair *= len(Relation)
-            self.pair += behaviour.relation.take(agents)
+        self.pair = np.full(len(agents), CALM, np.intp)
+        active = np.flatnonzero(self.active)
+        if len(active):
+            self.pair[active] = _pairs(behaviour, agents.take(active))
         self.values: dict[str, NDArray[Any]] = {}
-
-    def meets(self, rule: CompiledRule) -> NDArray[np.bool_] | None:
-        """Who meets a rule's conditions; None if nobody does."""
-        if rule.pairs is not None:
-            if not self.any_active:
-                return None
-            # Whoever no event ever moved has no pair, and is not active.
-            good = rule.pairs.ravel().take(self.pair, mode="clip")
-            good &= self.active
-        elif rule.calm:
-            good = ~self.active
-        else:
-            good = np.ones(len(self.agents), np.bool_)
-        for name, least, below in rule.limits:
-            value = self.number(name)
-            if np.isfinite(least):
-                good &= value >= least
-            if np.isfinite(below):
-                good &= value < below
-        for name, wanted in rule.signals:
-            if name in self.columns:
-                good &= self.columns[name].take(self.agents).astype(np.bool_) == wanted
-            elif wanted:
-                return None
-        return good if good.any() else None
 
     def number(self, name: str) -> NDArray[Any]:
         """A number that rules may ask for, 0 where nobody supplies it."""
@@ -336,19 +309,21 @@ def _enter(
     behaviour: Behaviour,
     machine: int,
     agents: NDArray[np.int64],
-    state: int,
-    when: NDArray[Any],
+    state: NDArray[np.int16],
+    when: NDArray[np.int32],
     columns: Columns,
     rng: np.random.Generator,
 ) -> None:
-    """Put agents into a state: how they look there, for how long, and what the channels say."""
+    """Put agents into states: how they look there, for how long, and what the channels say."""
     b = behaviour
-    variant, motion = _draw_look(compiled, state, agents, columns, rng)
-    planned = b.ahead[machine].take(agents) == state
-    if planned.any():
-        variant = np.where(planned, b.ahead_variant[machine].take(agents), variant)
-        motion = np.where(planned, b.ahead_motion[machine].take(agents), motion)
-        b.ahead[machine][agents] = -1
+    excitement = columns["excitement"].take(agents)
+    variant, motion = compiled.looks.draw(state, excitement, rng)
+    planned = np.flatnonzero(b.ahead[machine].take(agents) == state)
+    if len(planned):
+        who = agents.take(planned)
+        variant[planned] = b.ahead_variant[machine].take(who)
+        motion[planned] = b.ahead_motion[machine].take(who)
+        b.ahead[machine][who] = -1
     if machine == 0:
         # What a body shows goes on where a state has nothing of its own.
         keeps = np.flatnonzero(motion == KEEP)
@@ -357,76 +332,52 @@ def _enter(
     b.variant[machine][agents] = variant
     b.motion[machine][agents] = motion
     b.entered[machine][agents] = when
-    b.until[machine][agents] = _end_of_stay(compiled, b, state, agents, when, rng)
+    b.until[machine][agents] = _end_of_stay(compiled, b, machine, state, agents, when, rng)
     for channel, values in (
         (b.posture, compiled.posture),
         (b.arms, compiled.arms),
         (b.head, compiled.head),
     ):
-        if values[state] != KEEP:
-            channel[agents] = values[state]
-    if compiled.is_bridge[state]:
-        after, _, _ = _choose(
-            compiled, behaviour, machine, state, agents, when + PIECE, columns, rng
-        )
-        for number in _present(after, len(compiled.names)):
-            if number == state:
-                continue
-            k = agents[after == number]
-            variant, motion = _draw_look(compiled, number, k, columns, rng)
-            b.ahead[machine, k], b.ahead_variant[machine, k] = number, variant
-            b.ahead_motion[machine, k] = b.motion[machine, k] = motion
+        value = values.take(state)
+        named = np.flatnonzero(value != KEEP)
+        channel[agents.take(named)] = value.take(named)
+    bridges = np.flatnonzero(compiled.is_bridge.take(state))
+    if len(bridges):
+        who, at = agents.take(bridges), state.take(bridges)
+        then = when.take(bridges) + np.int32(PIECE)
+        after = _choose(compiled, b, machine, at, who, then, columns, rng)[0].target
+        goes = np.flatnonzero(after != at)
+        who, after = who.take(goes), after.take(goes)
+        variant, motion = compiled.looks.draw(after, columns["excitement"].take(who), rng)
+        b.ahead[machine][who], b.ahead_variant[machine][who] = after, variant
+        b.ahead_motion[machine][who] = b.motion[machine][who] = motion
 
 
 def _end_of_stay(
     compiled: CompiledTable,
     b: Behaviour,
-    state: int,
+    machine: int,
+    state: NDArray[np.int16],
     agents: NDArray[np.int64],
-    when: NDArray[Any],
+    when: NDArray[np.int32],
     rng: np.random.Generator,
-) -> NDArray[Any]:
-    least, most = compiled.pieces[state]
-    stay = np.full(len(agents), PIECE * least, np.int64)
-    if most > least:
-        stay = PIECE * rng.integers(least, most + 1, len(agents))
-    wakes = compiled.wakes[state]
-    if wakes.any():
-        # Whoever comes here on the way to somewhere else, for an event, goes on after a piece.
-        moved = np.flatnonzero(b.stirred_until.take(agents) > when)
-        who = agents.take(moved)
-        stay[moved[wakes[b.event.take(who), b.relation.take(who)]]] = PIECE
-    ready = _awake(compiled, b, agents, state, when + stay)
-    end: NDArray[Any] = np.minimum(ready, when + compiled.limit[state])
+) -> NDArray[np.int32]:
+    """When stays end that begin at `when`; those of drawn length end on the beat next to it."""
+    least, most = compiled.pieces[:, 0].take(state), compiled.pieces[:, 1].take(state)
+    stay: NDArray[np.int32] = least
+    several = np.flatnonzero(most > least)
+    if len(several):
+        stay[several] = rng.integers(least.take(several), most.take(several) + 1)
+    stay *= np.int32(PIECE)
+    late = when.take(several) - _beat(machine, agents.take(several))
+    late += np.int32(PIECE // 2)
+    late %= np.int32(PIECE)
+    stay[several] -= late - np.int32(PIECE // 2)
+    # Whoever comes here on the way to somewhere else, for an event, goes on after a piece.
+    moved, at = _moved(b, agents, state, b.stirred_until.take(agents) > when)
+    if len(moved):
+        stay[moved[compiled.wakes.ravel().take(at)]] = PIECE
+    stay += when
+    ready = _awake(compiled, b, agents, state, stay)
+    end: NDArray[np.int32] = np.minimum(ready, when + compiled.limit.take(state))
     return end
-
-
-def _draw_look(
-    compiled: CompiledTable,
-    state: int,
-    agents: NDArray[np.int64],
-    columns: Columns,
-    rng: np.random.Generator,
-) -> tuple[NDArray[np.int16], NDArray[np.int16]]:
-    """Variants and motions for agents that enter a state, by effort, the more the more excited."""
-    look = compiled.looks[state]
-    if len(look.motion) == 1:
-        return (
-            np.full(len(agents), look.variant[0], np.int16),
-            np.full(len(agents), look.motion[0], np.int16),
-        )
-    least = look.excitement.min()
-    edges: NDArray[Any] | list[Any]
-    if (look.excitement == least).all():
-        # Everyone has the same choice.
-        edges = np.cumsum(look.chance)
-    else:
-        excitement = np.maximum(columns["excitement"].take(agents), least)
-        edges = [np.where(look.excitement[0] <= excitement, look.chance[0], 0.0)]
-        for from_, chance in zip(look.excitement[1:], look.chance[1:], strict=True):
-            edges.append(edges[-1] + chance * (from_ <= excitement))
-    draw = rng.random(len(agents))
-    draw *= edges[-1]
-    np.minimum(draw, np.nextafter(edges[-1], 0.0), out=draw)
-    pick = np.minimum(_count_passed(edges, draw), len(look.motion) - 1)
-    return look.variant.take(pick), look.motion.take(pick)

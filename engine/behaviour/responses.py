@@ -48,6 +48,7 @@ def respond(
     present: NDArray[np.bool_],
     tick: int,
     rng: np.random.Generator,
+    part: slice | None = None,
 ) -> NDArray[np.int64]:
     """Let an event move the crowd.
 
@@ -65,13 +66,15 @@ def respond(
         Pose tick of the event.
     rng
         Where reaction times come from.
+    part
+        Agents, from start to stop, whom it may move; everybody by default.
 
     Returns
     -------
     (K,) int64 ids of those who will react, ascending
     """
     effect = _Effect(event, compiled)
-    groups = _groups(event, team, placement, present)
+    groups = _groups(event, team, placement, present, part or slice(0, len(present)))
     moved = [
         _move(effect, agents, relation, behaviour, emotion, team, tick, rng)
         for agents, relation in groups
@@ -260,7 +263,7 @@ def _wake(
 
 
 def _groups(
-    event: Event, team: Team, placement: Placement, present: NDArray[np.bool_]
+    event: Event, team: Team, placement: Placement, present: NDArray[np.bool_], part: slice
 ) -> Iterator[tuple[NDArray[np.int64] | slice, NDArray[np.int8]]]:
     """Whom an event may concern, block by block, and what it is to each."""
     if event.kind in PLACED:
@@ -278,8 +281,8 @@ def _groups(
     of_side[NEUTRAL] = Relation.NEUTRAL
     if event.side is not None:
         of_side[event.side] = Relation.OWN
-    for start in range(0, len(present), BLOCK):
-        block = slice(start, min(start + BLOCK, len(present)))
+    for start in range(part.start, part.stop, BLOCK):
+        block = slice(start, min(start + BLOCK, part.stop))
         # The last side is the neutral one, so -1 is a place in it like any other.
         relation = of_side.take(team.side[block], mode="wrap")
         if not present[block].all():

@@ -27,7 +27,11 @@ class Relation(IntEnum):
     NEAR = 4
 
 
+MACHINES = ("body", "head", "arms")
+"""Machines that can run beside each other; those of heads and arms are shown over the body's."""
 RELATIONS = tuple(relation.name.lower() for relation in Relation)
+NO_LIMIT = 10**8
+"""The `limit`, in pieces, of a state in which agents may stay for ever: a hundred days and more."""
 GUARDS = ("excitement", "embarrassment", "mood", "fatigue", "fervour", "weight", "time")
 """Numbers that every crowd has for a rule to ask for: emotions, how impressive the event is, and
 pieces since the state was entered."""
@@ -62,7 +66,7 @@ class State:
     name
         Unique in the table.
     machine
-        The machine that it belongs to; machines run beside each other.
+        The machine that it belongs to, one of `MACHINES`.
     role
         Whose motions stand in for clips that a character doesn't have; None shows nothing then.
     posture, arms, head
@@ -86,7 +90,7 @@ class State:
     arms: str | None = None
     head: str | None = None
     pieces: tuple[int, int] = (1, 1)
-    limit: int = 600
+    limit: int = NO_LIMIT
     leave_to: str = ""
     variants: tuple[Variant, ...] = ()
     line: int = 0
@@ -150,6 +154,9 @@ class Response:
         Shortest and longest reaction time in seconds.
     excitement, embarrassment, mood, fatigue
         By how much the most impressive event raises or lowers these.
+    applause
+        Benefit of clapping for the most impressive event, 1 that of a good talk; below 0 people
+        refuse to.
     """
 
     gain: float = 0.0
@@ -159,6 +166,7 @@ class Response:
     embarrassment: float = 0.0
     mood: float = 0.0
     fatigue: float = 0.0
+    applause: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,8 +192,9 @@ class BehaviourTable:
 
     @property
     def machines(self) -> tuple[str, ...]:
-        """Names of the machines in the order of their first states."""
-        return tuple(dict.fromkeys(state.machine for state in self.states))
+        """Names of the machines that have states, in the order of `MACHINES`."""
+        used = {state.machine for state in self.states}
+        return tuple(machine for machine in MACHINES if machine in used)
 
     def state(self, name: str) -> State:
         """The state of that name; ValueError if there is none."""
@@ -202,6 +211,9 @@ class BehaviourTable:
             if state.name in by_name:
                 return state.line, f"state '{state.name}' is there twice"
             by_name[state.name] = state
+            if state.machine not in MACHINES:
+                known = ", ".join(MACHINES)
+                return state.line, f"machine is '{state.machine}', expected one of: {known}"
         if not self.states:
             return 0, "there are no states"
         for rule in self.rules:

@@ -45,7 +45,17 @@ from typing import Any, NoReturn
 from ..crowd.motions import Role
 from ..errors import AssetError
 from .events import KINDS
-from .table import GUARDS, POSTURES, RELATIONS, BehaviourTable, Response, Rule, State, Variant
+from .table import (
+    GUARDS,
+    NO_LIMIT,
+    POSTURES,
+    RELATIONS,
+    BehaviourTable,
+    Response,
+    Rule,
+    State,
+    Variant,
+)
 from .table_lines import Lines
 
 TABLES = ("sport", "rock_concert", "classical_concert", "speech")
@@ -74,7 +84,16 @@ _RULE = (
     "limits",
     *GUARDS,
 )
-_RESPONSE = ("gain", "seconds", "delay", "excitement", "embarrassment", "mood", "fatigue")
+_RESPONSE = (
+    "gain",
+    "seconds",
+    "delay",
+    "excitement",
+    "embarrassment",
+    "mood",
+    "fatigue",
+    "applause",
+)
 
 
 def load_table(name: str | Path) -> BehaviourTable:
@@ -170,7 +189,9 @@ class _Reader:
                 line("role"), f"role is {given['role']!r}, expected one of {', '.join(roles)}"
             )
         least, most = self.pieces(given, line("pieces"))
-        limit = self.number(given.get("limit", max(600, most)), line("limit"), "limit", most, 1e6)
+        limit = NO_LIMIT
+        if "limit" in given:
+            limit = int(self.number(given["limit"], line("limit"), "limit", most, 1e6))
         variants = given.get("variants", [])
         if not isinstance(variants, list):
             self.fail(line("variants"), "variants is no list")
@@ -185,7 +206,7 @@ class _Reader:
             arms=given.get("arms"),
             head=given.get("head"),
             pieces=(least, most),
-            limit=int(limit),
+            limit=limit,
             leave_to=given.get("leave_to", ""),
             variants=made,
             line=line(),
@@ -208,7 +229,7 @@ class _Reader:
                 self.fail(line, f"clips of variant {number}: {clips!r} is no expression: {error}")
         return Variant(
             clips=clips,
-            effort=self.number(value.get("effort", 1.0), line, "effort", 1e-3),
+            effort=self.number(value.get("effort", 1.0), line, "effort", 1e-6),
             excitement=self.number(value.get("excitement", 0.0), line, "excitement", 0.0, 1.0),
         )
 
@@ -240,7 +261,7 @@ class _Reader:
             yield Rule(
                 origin=origin,
                 target=given["to"],
-                effort=self.number(given.get("effort", 1.0), line("effort"), "effort", 1e-3),
+                effort=self.number(given.get("effort", 1.0), line("effort"), "effort", 1e-6),
                 events=frozenset(events),
                 relations=frozenset(self.names(relations, line("side"), "side", RELATIONS)),
                 calm=event is False,
@@ -267,8 +288,8 @@ class _Reader:
                 given = self.table(value, place)
                 self.known(given, _RESPONSE, place)
                 delay = self.pair(given.pop("delay", [0.15, 0.6]), line, "delay", 0.0, 60.0)
-                low = {"gain": 0.0, "seconds": 0.0}
-                high = {"seconds": 3600.0, "gain": 1000.0}
+                low = {"gain": 0.0, "seconds": 0.0, "applause": -10.0}
+                high = {"seconds": 3600.0, "gain": 1000.0, "applause": 10.0}
                 numbers = {
                     key: self.number(
                         value,

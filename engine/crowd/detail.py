@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...components.attachment import PartBits
 from ...components.detail import Detail, Level
-from ...components.placement import Placement
+from ...components.placement import GROUP, Placement
 from ...components.view import View
 
 MESH_PIXELS = (110.0, 42.0, 17.0)
@@ -21,7 +21,7 @@ MESH_PIXELS = (110.0, 42.0, 17.0)
 
 _BLOCK = 8192
 """Agents a matrix product: larger products are spread over threads, which wait for each other."""
-_GROUP = 256
+_GROUP = GROUP
 """Neighbouring agents that have a common box."""
 
 Ints = NDArray[np.int64]
@@ -36,13 +36,14 @@ class Bounds:
     ----------
     low, high
         (4, G) float32 least and greatest x, y, z and scale of each group.
-    version
+    version, touches
         Of the placement that they were made from.
     """
 
     low: NDArray[np.float32]
     high: NDArray[np.float32]
     version: int
+    touches: int = 0
 
     @classmethod
     def of(cls, placement: Placement) -> Bounds:
@@ -53,7 +54,17 @@ class Bounds:
             np.minimum.reduceat(body, starts, axis=1),
             np.maximum.reduceat(body, starts, axis=1),
             placement.version,
+            placement.touches,
         )
+
+    def follow(self, placement: Placement) -> None:
+        """Fit the boxes of groups in which somebody was moved since (`Placement.touch`)."""
+        for group in np.flatnonzero(placement.touched > self.touches):
+            some = slice(group * _GROUP, (group + 1) * _GROUP)
+            place, scale = placement.position[:, some], placement.scale[some]
+            self.low[:, group] = (*place.min(axis=1), scale.min())
+            self.high[:, group] = (*place.max(axis=1), scale.max())
+        self.touches = placement.touches
 
     def ids(self, rows: NDArray[np.float32], edges: NDArray[np.float32], count: int) -> Ints:
         """Ids below `count` of the groups that reach beyond the edges of all planes (P, 4)."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..animation.skeleton import Skeleton
 from ..assets.character import Character
+from ..assets.variants import one_look
 from ..streams.pool import bind_positions
 
 MARKERS = ("head", "chest", "hips", "hand_l", "hand_r", "foot_l", "foot_r")
@@ -51,10 +52,11 @@ def make_figure(character: Character) -> Figure:
     """Find a character's markers and height; never fails, see the module's docstring."""
     skeleton = character.skeleton
     bind = bind_positions(skeleton)
-    points = np.concatenate([mesh.positions for mesh in character.meshes])
+    meshes = one_look(character).meshes
+    points = np.concatenate([mesh.positions for mesh in meshes])
     height = max(float(np.ptp(points[:, 1])), 1e-6)
     skins = np.zeros(skeleton.joint_count, np.bool_)
-    for mesh in character.meshes:
+    for mesh in meshes:
         skins[mesh.joints[mesh.weights > 0]] = True
     extreme = _extremes(bind, skins)
     found = []

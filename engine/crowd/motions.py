@@ -106,7 +106,9 @@ class MotionLibrary:
         return motions
 
 
-def sort_motions(clips: Sequence[Clip], most: int | None = None) -> MotionLibrary:
+def sort_motions(
+    clips: Sequence[Clip], most: int | None = None, wanted: Sequence[Sequence[str]] = ()
+) -> MotionLibrary:
     """Sort a character's clips into roles by their names.
 
     Clips that don't end where they begin are no loops, whatever the file says, and are left out.
@@ -120,6 +122,9 @@ def sort_motions(clips: Sequence[Clip], most: int | None = None) -> MotionLibrar
     most
         Of how many motions variants are left out, those with the highest numbers first, until so
         many are left or only one of each kind; None keeps all.
+    wanted
+        Clips that somebody asks for, by name: of each list the first goes before variants of other
+        motions, and so do the others if there is room. Those that no role has stay without one.
 
     Raises
     ------
@@ -129,16 +134,19 @@ def sort_motions(clips: Sequence[Clip], most: int | None = None) -> MotionLibrar
     if not clips:
         raise ValueError("clips: a crowd needs at least one clip")
     kept: list[int] = []
-    role_of: list[Role] = []
+    role_of: list[Role | None] = []
     weight: list[float] = []
+    rank = _ranks(wanted)
     for index, clip in enumerate(clips):
+        if not (clip.looping and closes(clip)):
+            continue
         pattern = _match(clip.name)
-        if pattern is not None and clip.looping and _closes(clip):
+        if pattern is not None or clip.name in rank:
             kept.append(index)
-            role_of.append(pattern.role)
-            weight.append(pattern.innate)
-    kept, role_of, weight = _thinned(clips, kept, role_of, weight, most)
-    if not kept:
+            role_of.append(pattern.role if pattern else None)
+            weight.append(pattern.innate if pattern else 0.0)
+    kept, role_of, weight = _thinned(clips, kept, role_of, weight, most, rank)
+    if not any(role_of):
         kept, role_of, weight = [0], [Role.CALM], [1.0]
         if len(clips) > 1:
             kept, role_of, weight = [0, 1], [Role.CALM, Role.CHEER], [1.0, 0.0]
@@ -239,16 +247,22 @@ def start_streams(
 def _thinned(
     clips: Sequence[Clip],
     kept: list[int],
-    roles: list[Role],
+    roles: list[Role | None],
     weights: list[float],
     most: int | None,
-) -> tuple[list[int], list[Role], list[float]]:
+    rank: dict[str, int],
+) -> tuple[list[int], list[Role | None], list[float]]:
     """Leave out variants beyond `most` motions, and share the weight out among the rest."""
     kinds = [_NUMBER.sub("", clips[index].name) for index in kept]
     order = [kinds[:k].count(kind) for k, kind in enumerate(kinds)]
-    chosen = sorted(range(len(kept)), key=lambda k: (order[k], k))
+    needed = [number == 0 and role is not None for number, role in zip(order, roles, strict=True)]
+    names = [clips[index].name for index in kept]
+    chosen = sorted(
+        range(len(kept)),
+        key=lambda k: (not needed[k], rank.get(names[k], len(rank)), order[k], k),
+    )
     if most is not None:
-        chosen = chosen[: max(most, order.count(0))]
+        chosen = chosen[: max(most, needed.count(True))]
     chosen.sort()
     together = Counter(kinds[k] for k in chosen)
     return (
@@ -258,7 +272,14 @@ def _thinned(
     )
 
 
-def _closes(clip: Clip) -> bool:
+def _ranks(wanted: Sequence[Sequence[str]]) -> dict[str, int]:
+    """How early each wanted clip comes: the first of every list, then the second ones, ..."""
+    deepest = max(map(len, wanted), default=0)
+    ordered = (names[depth] for depth in range(deepest) for names in wanted if depth < len(names))
+    return {name: number for number, name in enumerate(dict.fromkeys(ordered))}
+
+
+def closes(clip: Clip) -> bool:
     """Whether no joint turns by more than `SEAM` from the last key to the first."""
     dots = np.abs(np.sum(clip.rotation[0] * clip.rotation[-1], axis=1))
     return bool(2.0 * np.arccos(np.clip(dots.min(), 0.0, 1.0)) < SEAM)

@@ -18,9 +18,10 @@ from .settings_file import format_settings, read_settings
 from .stand import MOST_ROWS, MOST_SEATS
 
 Layout = Literal["bowl", "stand"]
-Poses = Literal["streams", "baked"]
+Poses = Literal["streams", "baked", "none"]
 Offsets = Literal["normal", "uniform"]
 Fans = Literal["away block", "mixed", "blocks"]
+Parties = Literal["football", "general"]
 LAYOUTS: tuple[Layout, ...] = get_args(Layout)
 
 _CHOICES: dict[str, tuple[str, ...]] = {
@@ -28,6 +29,7 @@ _CHOICES: dict[str, tuple[str, ...]] = {
     "poses": get_args(Poses),
     "offsets": get_args(Offsets),
     "fans": get_args(Fans),
+    "parties": get_args(Parties),
 }
 
 _WHOLE = {
@@ -36,13 +38,14 @@ _WHOLE = {
     "columns": (1, MOST_ROWS),
     "sides": (1, MOST_SIDES),
     "streams": (1, 256),
-    "spare_streams": (0, 255),
+    "spare_streams": (0, 256),
     "history": (2, 254),
     "slots": (0, 8192),
+    "stewards": (0, 1000),
     "uniques": (0, 2048),
     "seed": (0, 2**63 - 1),
 }
-_FLAGS = ("rest_idle", "lod")
+_FLAGS = ("rest_idle", "lod", "casting", "walking")
 _REAL = {
     "step": (0.3, 10.0),
     "rise": (0.0, 10.0),
@@ -52,8 +55,11 @@ _REAL = {
     "away_share": (0.0, 1.0),
     "children": (0.0, 1.0),
     "old": (0.0, 1.0),
+    "women": (0.0, 1.0),
     "props": (0.0, 1.0),
+    "tint": (0.0, 1.0),
     "ultras": (0.0, 1.0),
+    "latecomers": (0.0, 1.0),
     "embarrassment": (0.0, 1.0),
 }
 
@@ -86,15 +92,28 @@ class CrowdSpec:
     ultras
         Share of home supporters who make more of everything and stand all match; three times as
         many of the others.
+    parties
+        Who comes with whom: ``"football"``, a quarter of the people alone and parties of four on
+        average; or ``"general"``, mostly pairs. Children come with adults.
     behaviour
         Table of what people do: ``sport``, ``rock_concert``, ``classical_concert``, ``speech``, or
         a file.
+    women
+        Share of women among the grown-ups and of girls among the children; they have other bodies
+        and hair where the character has such variants.
     embarrassment
         Of the whole crowd: nobody minds being seen at 0, everybody does at 1.
+    latecomers
+        Share of the people who come within the first five minutes and walk to their seats.
+    stewards
+        Stewards on the gangways; each has the agent of a seat that stays empty.
+    walking
+        Whether people can be told to come and go (`Crowd.arrive`, `Crowd.leave`); always where
+        there are latecomers or stewards. It takes a bowl, streams, and a clip of walking.
     streams, history
         Animation streams and poses kept of each.
     spare_streams
-        How many of the streams the crowd leaves free, for motions that you add to its pool.
+        Further stream rows that are left free for motions of your own.
     slots, uniques
         Agents that can blend from the middle of another blend at once, and motions that are not
         shared, such as live ones.
@@ -103,10 +122,17 @@ class CrowdSpec:
         then follows from the motions that are in use; agents whose stream just woke play in step
         for a moment before they drift apart.
     props
-        Share of a side's supporters who have a cap, a scarf or a flag in its colours. They are made
-        for the built-in spectator; other characters have none.
+        Share of a side's supporters who have a cap, a scarf, a flag, a foam hand or, among ultras,
+        a drum in its colours. They are made for the built-in spectator; other characters have none.
+    tint
+        How much of the agents' colours characters take on whose materials don't say what they are,
+        part by part; 0 leaves them as their file has them.
+    casting
+        Whether neighbours who were drawn too much alike swap clothes or motions with others.
     poses
-        Whether motions are streamed, or every frame of every clip is baked beforehand.
+        Whether motions are streamed, or every frame of every clip is baked beforehand. With
+        ``"none"`` nobody has poses and nothing can be drawn: only what people do is stepped, many
+        times faster than it happens. Getting up and sitting down take no time then.
     offsets
         How the agents of a stream are first spread over its history.
     seed
@@ -132,22 +158,29 @@ class CrowdSpec:
     away_share: float = field(default=0.05, metadata=_help("share of the away block, with 2 sides"))
     children: float = field(default=0.06, metadata=_help("share of children"))
     old: float = field(default=0.1, metadata=_help("share of old people"))
+    women: float = field(default=0.4, metadata=_help("share of women, and of girls"))
     fans: Fans = field(
         default="away block", metadata=_help("how sides sit: away block, mixed or blocks")
     )
     ultras: float = field(default=0.05, metadata=_help("share of supporters who are ultras"))
+    parties: Parties = field(default="football", metadata=_help("party sizes: football or general"))
     behaviour: str = field(default="sport", metadata=_help("behaviour table: a name or a file"))
     embarrassment: float = field(default=0.25, metadata=_help("of the whole crowd, 0 to 1"))
+    latecomers: float = field(default=0.0, metadata=_help("share of people who come late"))
+    stewards: int = field(default=0, metadata=_help("stewards on the gangways, 0 to 1000"))
+    walking: bool = field(default=False, metadata=_help("let people come and go"))
     streams: int = field(default=256, metadata=_help("animation streams, 1 to 256"))
-    spare_streams: int = field(default=0, metadata=_help("streams left free for your own motions"))
+    spare_streams: int = field(default=0, metadata=_help("further streams for your own motions"))
     history: int = field(default=60, metadata=_help("poses kept of each stream, 2 to 254"))
     slots: int = field(default=800, metadata=_help("transition slots, 0 to 8192"))
     uniques: int = field(default=64, metadata=_help("motions that are not shared, 0 to 2048"))
     rest_idle: bool = field(default=False, metadata=_help("stop streams that nobody shows"))
     props: float = field(
-        default=0.35, metadata=_help("share of supporters with a cap, a scarf or a flag")
+        default=0.35, metadata=_help("share of supporters with a cap, a scarf, a flag, ...")
     )
-    poses: Poses = field(default="streams", metadata=_help("streams, or all frames baked"))
+    tint: float = field(default=1.0, metadata=_help("colours of agents on imported characters"))
+    casting: bool = field(default=True, metadata=_help("keep neighbours from being clones"))
+    poses: Poses = field(default="streams", metadata=_help("streams, all frames baked, or none"))
     offsets: Offsets = field(
         default="normal", metadata=_help("first offsets on a stream: normal or uniform")
     )
@@ -165,11 +198,6 @@ class CrowdSpec:
                 f"rows * columns must be at most {MOST_SEATS:,}, "
                 f"not {self.rows} * {self.columns} = {self.rows * self.columns:,}"
             )
-        if self.spare_streams >= self.streams:
-            raise ValueError(
-                f"spare_streams must be less than streams, not {self.spare_streams} of "
-                f"{self.streams}"
-            )
         if self.children + self.old > 1.0 + 1e-9:
             raise ValueError(f"children + old must be at most 1, not {self.children} + {self.old}")
         if (
@@ -186,6 +214,11 @@ class CrowdSpec:
     def seat_count(self) -> int:
         """Seats of the layout, taken or not."""
         return self.seats if self.layout == "bowl" else self.rows * self.columns
+
+    @property
+    def walks(self) -> bool:
+        """Whether people can be on their way."""
+        return self.walking or self.latecomers > 0.0 or self.stewards > 0
 
     def replace(self, **changes: object) -> CrowdSpec:
         """A copy with other values; ValueError also for a name that is not a field."""

@@ -29,9 +29,8 @@ def affordable_streams(rows: int, motions: int, whole: int, types: int) -> int:
         Body types beside the character's own.
     """
     left = rows - whole * (1 + types)
-    own = int(left / (1.0 + TWIN_SHARE * types))
-    enough = own >= motions and left - own >= types * motions
-    return own if enough else 0
+    own = min(int(left / (1.0 + TWIN_SHARE * types)), left - types * motions)
+    return own if own >= motions else 0
 
 
 def start_twins(
@@ -51,7 +50,7 @@ def start_twins(
     whole
         (K,) bool motions all of whose streams are needed.
     spare
-        Free rows that are left alone.
+        Rows that stay free.
     """
     types = len(pool.twins.types)
     shared = np.where(whole, streams.count, np.minimum(streams.count, 1))

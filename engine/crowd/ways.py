@@ -189,16 +189,6 @@ def add_ways(library: MotionLibrary, plans: tuple[Way, Way], first_clip: int) ->
     )
 
 
-def without_ways(library: MotionLibrary) -> MotionLibrary:
-    """The library before `add_ways`."""
-    return replace(
-        library,
-        names=library.names[:-2],
-        clips=library.clips[:-2],
-        innate=library.innate[:-2],
-    )
-
-
 def start_ways(
     pool: StreamPool,
     library: MotionLibrary,

@@ -1,6 +1,7 @@
 """Crowds as files for other programs: recordings of what agents show, as glTF and USD."""
 
+from .clip_schedule import ClipSchedule
 from .recording import Recording, recorded_bytes
 from .targets import Exported
 
-__all__ = ["Exported", "Recording", "recorded_bytes"]
+__all__ = ["ClipSchedule", "Exported", "Recording", "recorded_bytes"]

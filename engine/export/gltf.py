@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .gltf_body import add_posed, add_skinned, add_surface, body_meshes
+from .gltf_body import (
+    add_posed,
+    add_skinned,
+    add_surface,
+    body_meshes,
+    worn_triangles,
+    worn_vertices,
+)
 from .gltf_file import KINDS, GltfFile, exact
 from .local_motion import SHORT, LocalMotion, local_motion
 from .morph_targets import morph_targets
@@ -38,8 +46,8 @@ def write_gltf(
 ) -> Exported:
     """Write skinned agents to a .glb or .gltf file.
 
-    Agents share the vertices of their meshes; each has a skeleton, its colours, its weights of the
-    morph targets and, if the recording has several frames, its keys.
+    Agents that wear the same meshes share their vertices; each has a skeleton, its colours, its
+    weights of the morph targets and, if the recording has several frames, its keys.
 
     Parameters
     ----------
@@ -78,7 +86,7 @@ def write_gltf(
     targets = morph_targets(recording, meshes)
     paints, chosen = mix_paints(recording, meshes)
     file.add_materials(paints, recording.character.materials)
-    primitives = add_skinned(file, meshes, targets)
+    primitives = dict(enumerate(add_skinned(file, meshes, targets)))
     inverse = np.tile(np.eye(4, dtype=np.float32), (skeleton.joint_count, 1, 1))
     inverse[:, :3] = skeleton.inverse_bind
     bind = file.add(inverse.transpose(0, 2, 1), target=None)
@@ -116,14 +124,15 @@ def write_gltf(
                 file.skins.append(
                     {"joints": joints[rig.skin].tolist(), "inverseBindMatrices": bind}
                 )
-                node = {"name": f"body {recording.agents[k]}", "mesh": len(file.meshes)}
-                node["skin"] = len(file.skins) - 1
-                mesh = _mesh(recording, k, primitives, chosen[k])
-                if targets.names:
-                    mesh["weights"] = exact(targets.weights[k])
-                    mesh["extras"] = {"targetNames": list(targets.names)}
-                file.meshes.append(mesh)
-                file.roots += [body, file.add_node(node)]
+                file.roots.append(body)
+                if (mesh := _mesh(recording, k, primitives, chosen[k])) is not None:
+                    node = {"name": mesh["name"], "mesh": len(file.meshes)}
+                    node["skin"] = len(file.skins) - 1
+                    if targets.names:
+                        mesh["weights"] = exact(targets.weights[k])
+                        mesh["extras"] = {"targetNames": list(targets.names)}
+                    file.meshes.append(mesh)
+                    file.roots.append(file.add_node(node))
                 if split and animation["channels"]:
                     file.animations.append(animation)
                 if progress is not None:
@@ -136,7 +145,7 @@ def write_gltf(
             )
         file.animations.append(animation)
     size = file.write(target)
-    triangles = sum(len(mesh.triangles) for mesh in meshes) * len(recording)
+    triangles = worn_triangles(recording, meshes)
     return Exported(target, size, len(recording), recording.frames, triangles, stretched, deviation)
 
 
@@ -172,42 +181,41 @@ def write_baked_gltf(
             "take recording.frame(number), or write USD"
         )
     meshes = body_meshes(recording, level)
-    vertices = sum(len(mesh.positions) for mesh in meshes)
-    check_size(target, len(recording) * vertices * 24, "export fewer agents, or a coarser level")
+    vertices = worn_vertices(recording, meshes)
+    check_size(target, vertices * 24, "export fewer agents, or a coarser level")
     file = GltfFile(recording.character.name)
     paints, chosen = mix_paints(recording, meshes)
     file.add_materials(paints, recording.character.materials)
     surfaces = [add_surface(file, mesh) for mesh in meshes]
+    worn = recording.worn(meshes)
     for k in range(len(recording)):
-        posed = (recording.skinned(mesh, k, 0) for mesh in meshes)
-        primitives = [
-            add_posed(file, surface, *points)
-            for surface, points in zip(surfaces, posed, strict=True)
-        ]
+        primitives = {
+            number: add_posed(file, surfaces[number], *recording.skinned(meshes[number], k, 0))
+            for number in np.flatnonzero(worn[k]).tolist()
+        }
         body = _add_agent(file, recording, k, None, -1)
-        file.nodes[body]["mesh"] = len(file.meshes)
-        file.meshes.append(_mesh(recording, k, primitives, chosen[k]))
+        if (mesh := _mesh(recording, k, primitives, chosen[k])) is not None:
+            file.nodes[body]["mesh"] = len(file.meshes)
+            file.meshes.append(mesh)
         file.roots.append(body)
         if progress is not None:
             progress("agents", k + 1, len(recording))
     size = file.write(target)
-    triangles = sum(len(mesh.triangles) for mesh in meshes) * len(recording)
-    return Exported(target, size, len(recording), 1, triangles)
+    return Exported(target, size, len(recording), 1, worn_triangles(recording, meshes))
 
 
 def _mesh(
     recording: Recording,
     k: int,
-    primitives: list[dict[str, Any]],
+    primitives: Mapping[int, dict[str, Any]],
     paints: NDArray[np.int64],
-) -> dict[str, Any]:
-    return {
-        "name": f"body {recording.agents[k]}",
-        "primitives": [
-            primitive | {"material": int(paint)}
-            for primitive, paint in zip(primitives, paints, strict=True)
-        ],
-    }
+) -> dict[str, Any] | None:
+    """What an agent wears of some primitives, in its colours; None if that is nothing."""
+    own = [
+        primitives[number] | {"material": int(paints[number])}
+        for number in np.flatnonzero(paints >= 0).tolist()
+    ]
+    return {"name": f"body {recording.agents[k]}", "primitives": own} if own else None
 
 
 def _add_agent(

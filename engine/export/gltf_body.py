@@ -15,12 +15,22 @@ from .recording import Recording
 
 
 def body_meshes(recording: Recording, level: int) -> tuple[SkinnedMesh, ...]:
-    """Meshes to export; ValueError if there are none."""
+    """Meshes that the agents wear; ValueError if there are none."""
     meshes = recording.meshes(level)
     if not meshes:
         name = recording.character.name
         raise ValueError(f"level is {level}, but '{name}' has no triangles there to export")
     return meshes
+
+
+def worn_triangles(recording: Recording, meshes: Sequence[SkinnedMesh]) -> int:
+    """Triangles of all agents together."""
+    return int((recording.worn(meshes) @ np.array([len(mesh.triangles) for mesh in meshes])).sum())
+
+
+def worn_vertices(recording: Recording, meshes: Sequence[SkinnedMesh]) -> int:
+    """Vertices of all agents together."""
+    return int((recording.worn(meshes) @ np.array([len(mesh.positions) for mesh in meshes])).sum())
 
 
 def add_surface(file: GltfFile, mesh: SkinnedMesh) -> dict[str, Any]:

@@ -37,15 +37,16 @@ def mix_paints(
 ) -> tuple[list[Paint], NDArray[np.int64]]:
     """All paints, and (K, meshes) which of them covers each mesh of each agent.
 
-    Agents with the same colour share a paint.
+    Agents with the same colour share a paint. It is -1 for meshes that an agent doesn't wear.
     """
     paints: list[Paint] = []
     known: dict[tuple[int, bytes], int] = {}
-    chosen = np.empty((len(recording), len(meshes)), np.int64)
+    chosen = np.full((len(recording), len(meshes)), -1)
+    worn = recording.worn(meshes)
     for number, mesh in enumerate(meshes):
         material = recording.character.materials[mesh.material]
         own = material.name in SURFACES
-        for k in range(len(recording)):
+        for k in np.flatnonzero(worn[:, number]):
             rgb = recording.colors[k, SURFACES.index(material.name)] if own else None
             key = (mesh.material, b"" if rgb is None else rgb.tobytes())
             if key not in known:

@@ -6,12 +6,14 @@ files can be written from one recording.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..assets.character import Character, SkinnedMesh
+from ..assets.variants import MOST_CHOICES, default_choices, variant_groups
 from ..crowd.morphs import MorphWeights, morphed_positions
 
 SURFACES = ("skin", "hair", "shirt", "trousers", "shoes")
@@ -51,11 +53,14 @@ class Recording:
         (K, 5, 3) uint8 sRGB of `SURFACES`.
     morphs
         How meshes take part in girth and head; None if they don't.
+    choice
+        (G, K) uint8 as `Body.choice` has them: what each has of the character's variants. What
+        `default_choices` says if it isn't given or has no rows.
 
     Raises
     ------
     ValueError
-        For columns of other shapes, or no frame or agent.
+        For columns of other shapes, choices that the character has not, or no frame or agent.
     """
 
     character: Character
@@ -70,15 +75,20 @@ class Recording:
     head: NDArray[np.float32]
     colors: NDArray[np.uint8]
     morphs: MorphWeights | None = None
+    choice: NDArray[np.uint8] = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        """Check the shapes."""
+        """Check the shapes, and fill in what nobody chose."""
         frames, count = self.yaw.shape
         joints = self.character.skeleton.joint_count
         if not frames or not count:
             raise ValueError(f"a recording of {count} agents at {frames} moments is empty")
         if not self.fps > 0:
             raise ValueError(f"fps is {self.fps}, expected more than 0")
+        groups = variant_groups(self.character)
+        if self.choice is None or not len(self.choice):
+            chosen = np.array(list(default_choices(self.character).values()), np.uint8)
+            object.__setattr__(self, "choice", np.repeat(chosen[:, None], count, axis=1))
         for name, shape in (
             ("agents", (count,)),
             ("palettes", (frames, count, joints, 3, 4)),
@@ -87,12 +97,20 @@ class Recording:
             ("girth", (count,)),
             ("head", (count,)),
             ("colors", (count, len(SURFACES), 3)),
+            ("choice", (len(groups), count)),
         ):
             found = getattr(self, name).shape
             if found != shape:
                 raise ValueError(f"{name} has shape {found}, expected {shape}")
         if len(self.labels) != count:
             raise ValueError(f"labels are {len(self.labels)}, expected {count}")
+        for row, (group, choices) in zip(self.choice, groups.items(), strict=True):
+            wrong = row[(row >= len(choices)) & (row != MOST_CHOICES)]
+            if len(wrong):
+                raise ValueError(
+                    f"choice has {wrong[0]} for '{group}', expected 0 to {len(choices) - 1}, "
+                    f"or {MOST_CHOICES} for none"
+                )
 
     def __len__(self) -> int:
         """Number of agents K."""
@@ -115,11 +133,34 @@ class Recording:
         return max(float(max(tops, default=1.0)), 1e-6)
 
     def meshes(self, level: int) -> tuple[SkinnedMesh, ...]:
-        """Meshes of a level of detail that have triangles; ValueError if there is no such level."""
+        """Meshes of a level of detail that have triangles and that somebody wears.
+
+        Raises
+        ------
+        ValueError
+            If there is no such level.
+        """
         levels = (self.character.meshes, *self.character.lower_levels)
         if not 0 <= level < len(levels):
             raise ValueError(f"level is {level}, expected 0 to {len(levels) - 1}")
-        return tuple(mesh for mesh in levels[level] if len(mesh.triangles))
+        drawn = tuple(mesh for mesh in levels[level] if len(mesh.triangles))
+        worn = self.worn(drawn)
+        return tuple(mesh for column, mesh in enumerate(drawn) if worn[:, column].any())
+
+    def worn(self, meshes: Sequence[SkinnedMesh]) -> NDArray[np.bool_]:
+        """(K, meshes) who wears which of some meshes: those of no variant, and those chosen."""
+        groups = variant_groups(self.character)
+        places = {
+            (group, variant.choice): (row, number)
+            for row, (group, variants) in enumerate(groups.items())
+            for number, variant in enumerate(variants)
+        }
+        worn = np.ones((len(self), len(meshes)), np.bool_)
+        for column, mesh in enumerate(meshes):
+            if mesh.variant is not None:
+                row, number = places[mesh.variant.group, mesh.variant.choice]
+                worn[:, column] = self.choice[row] == number
+        return worn
 
     def select(self, agents: int | ArrayLike) -> Recording:
         """The same moments of some of the agents, by id; ValueError for ids that aren't in it."""
@@ -142,6 +183,7 @@ class Recording:
             girth=self.girth[k],
             head=self.head[k],
             colors=self.colors[k],
+            choice=self.choice[:, k],
         )
 
     def frame(self, number: int) -> Recording:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from ..assets.character import SkinnedMesh
 from ..errors import AssetError
 from .gltf import STILL, UNSEEN
-from .gltf_body import body_meshes
+from .gltf_body import body_meshes, worn_triangles, worn_vertices
 from .local_motion import local_motion
 from .morph_targets import MorphTargets, morph_targets
 from .paints import to_linear
@@ -23,6 +24,8 @@ from .usd_body import (
     add_mesh,
     add_skeleton,
     add_skinned_mesh,
+    bind_joints,
+    bind_shades,
     joint_paths,
     primvar_of,
     set_display_color,
@@ -36,6 +39,7 @@ __all__ = ["KINDS", "check_usd", "write_usd"]
 
 ROOT = "/Crowd"
 PROTOTYPES = "/Prototypes"
+_MATERIALS = f"{PROTOTYPES}/Materials"
 _MATRICES_AT_ONCE = 100_000
 _OPERATIONS = ("xformOp:translate", "xformOp:rotateY", "xformOp:scale")
 
@@ -73,7 +77,7 @@ def write_usd(
     rigid
         Whether stretch is left out, so that a skeleton has bones only; see docs/export.md.
     instances
-        Whether skinned agents are instances, with colours as primvars.
+        Whether skinned agents are instances of their look's prototype, with colours as primvars.
     progress
         Called after every agent.
 
@@ -94,8 +98,7 @@ def write_usd(
     writer = _Writer(recording, meshes, target, progress)
     stretched, deviation = 0, 0.0
     if baked:
-        vertices = sum(len(mesh.positions) for mesh in meshes)
-        size = len(recording) * recording.frames * vertices * 24
+        size = recording.frames * worn_vertices(recording, meshes) * 24
         check_size(target, size, "export fewer agents, a shorter time, or a coarser level")
         writer.add_baked()
     else:
@@ -104,7 +107,7 @@ def write_usd(
         writer.layer.write(part)
         size = part.stat().st_size
     size += sum((target.parent / name).stat().st_size for name in writer.images.values())
-    triangles = sum(len(mesh.triangles) for mesh in meshes) * len(recording)
+    triangles = worn_triangles(recording, meshes)
     count, frames = len(recording), recording.frames
     return Exported(target, size, count, frames, triangles, stretched, deviation)
 
@@ -125,6 +128,9 @@ class _Writer:
             path, recording.character.materials, {mesh.material for mesh in meshes}
         )
         self._names = identifiers(tuple(mesh.name for mesh in meshes))
+        self._worn = recording.worn(meshes)
+        _, looks = np.unique(self._worn, axis=0, return_inverse=True)
+        self._looks: NDArray[np.intp] = looks.ravel()
         self._progress = progress
         root = self.layer.prim(ROOT, "Xform")
         root.kind = "assembly"
@@ -144,15 +150,19 @@ class _Writer:
             [factors(skeleton, chunk, np.float16).deviation(far) for chunk in chunks]
         )
         needs = np.logical_and(off > UNSEEN * recording.height, not rigid)
-        # Two prototypes: one for those whose bones are enough, one in which bones can stretch.
+        # Two skeletons: one for those whose bones are enough, one in which bones can stretch.
         stretched: NDArray[np.bool_] = np.any(needs, axis=1)
         union: NDArray[np.bool_] = np.any(needs, axis=0)
         rigs = {
             False: make_rig(skeleton, np.zeros(skeleton.joint_count, np.bool_)),
             True: make_rig(skeleton, union),
         }
+        self._add_shared(targets, own_colors=instances)
         for can in sorted(set(stretched.tolist())):
-            self._add_prototype(_prototype(can), rigs[can], targets, own_colors=instances)
+            self._add_rig(can, rigs[can])
+        # A prototype is a look: all who wear the same meshes over the same skeleton share it.
+        for look, can in sorted(set(zip(self._looks.tolist(), stretched.tolist(), strict=True))):
+            self._add_prototype(look, can, own_colors=instances)
         self.layer.prim(f"{ROOT}/Motions", "Scope")
         for first, chunk in zip(starts, chunks, strict=True):
             found = factors(skeleton, chunk, np.float16)
@@ -188,7 +198,8 @@ class _Writer:
             path = self._agent_path(k)
             prim = layer.prim(path, "Xform")
             self._place(prim, k)
-            for number, (name, mesh) in enumerate(zip(self._names, self.meshes, strict=True)):
+            for number in np.flatnonzero(self._worn[k]).tolist():
+                name, mesh = self._names[number], self.meshes[number]
                 body = layer.prim(f"{path}/{name}", "Mesh", apis=("MaterialBindingAPI",))
                 layer.refer(body, f"{folder}/{name}")
                 frames = [recording.skinned(mesh, k, f) for f in range(recording.frames)]
@@ -197,27 +208,53 @@ class _Writer:
                 self._paint(body, k, number)
             self._count(k)
 
-    def _add_prototype(
-        self, path: str, rig: Rig, targets: MorphTargets, *, own_colors: bool
-    ) -> None:
+    def _add_shared(self, targets: MorphTargets, *, own_colors: bool) -> None:
+        """Write the meshes of all looks over the skeleton without stretch, and the materials."""
         layer = self.layer
-        prim = layer.prim(path, "SkelRoot", abstract=True, apis=("SkelBindingAPI",))
-        layer.relate(prim, "skel:skeleton", f"{path}/Skeleton")
-        layer.set(prim, "extent", "float3[]", layer.extent(self._reachable()))
-        add_skeleton(layer, f"{path}/Skeleton", self.recording.character.skeleton, rig)
-        materials = f"{path}/Materials" if own_colors else f"{ROOT}/Materials"
-        if layer.layer.GetPrimAtPath(materials) is None:
-            self._add_materials(materials, own_colors=own_colors)
+        materials = _MATERIALS if own_colors else f"{ROOT}/Materials"
+        self._add_materials(materials, own_colors=own_colors)
+        layer.prim(_meshes(False), "Scope")
         for number, (name, mesh) in enumerate(zip(self._names, self.meshes, strict=True)):
-            body = add_skinned_mesh(
-                layer, f"{path}/{name}", mesh, rig, targets.names, targets.offsets[number]
-            )
+            path = f"{_meshes(False)}/{name}"
+            body = add_skinned_mesh(layer, path, mesh, targets.names, targets.offsets[number])
             if own_colors:
                 material = self.recording.character.materials[mesh.material]
                 set_display_color(layer, body, mesh, np.array(material.base_color[:3]))
-                light, dark = self._material(materials, mesh)
-                split_by_shade(layer, f"{path}/{name}", mesh, light, dark)
+                split_by_shade(layer, path, mesh)
 
+    def _add_rig(self, can: bool, rig: Rig) -> None:
+        """Write a skeleton, and the meshes over it if it has further joints."""
+        layer = self.layer
+        add_skeleton(layer, _skeleton(can), self.recording.character.skeleton, rig)
+        if not can:
+            return
+        layer.prim(_meshes(can), "Scope")
+        for name, mesh in zip(self._names, self.meshes, strict=True):
+            prim = layer.prim(f"{_meshes(can)}/{name}", "Mesh")
+            layer.refer(prim, f"{_meshes(False)}/{name}")
+            bind_joints(layer, prim, rig.skin[mesh.joints])
+
+    def _add_prototype(self, look: int, can: bool, *, own_colors: bool) -> None:
+        layer, path = self.layer, _prototype(look, can)
+        prim = layer.prim(path, "SkelRoot", apis=("SkelBindingAPI",))
+        layer.relate(prim, "skel:skeleton", f"{path}/Skeleton")
+        layer.set(prim, "extent", "float3[]", layer.extent(self._reachable))
+        layer.refer(layer.prim(f"{path}/Skeleton", "Skeleton"), _skeleton(can))
+        if own_colors:
+            layer.refer(layer.prim(f"{path}/Materials", "Scope"), _MATERIALS)
+        worn = self._worn[np.flatnonzero(self._looks == look)[0]]
+        for number in np.flatnonzero(worn).tolist():
+            name, mesh = self._names[number], self.meshes[number]
+            prim = layer.prim(f"{path}/{name}", "Mesh")
+            layer.refer(prim, f"{_meshes(can)}/{name}")
+            if own_colors:
+                light, dark = (
+                    f"{path}/{one.removeprefix(f'{PROTOTYPES}/')}"
+                    for one in self._material(_MATERIALS, mesh)
+                )
+                bind_shades(layer, f"{path}/{name}", mesh, light, dark)
+
+    @cached_property
     def _reachable(self) -> NDArray[np.float32]:
         """Corners of a box in which agents stay: the palettes' effect on the bind pose's box."""
         points = np.concatenate([mesh.positions for mesh in self.meshes])
@@ -279,7 +316,7 @@ class _Writer:
             weights = layer.floats(targets.weights[k])
             layer.set(animation, "blendShapeWeights", "float[]", weights)
         prim = layer.prim(path, "SkelRoot", apis=("SkelBindingAPI",))
-        layer.refer(prim, _prototype(can), instance=instances)
+        layer.refer(prim, _prototype(int(self._looks[k]), can), instance=instances)
         layer.relate(prim, "skel:animationSource", moves)
         self._place(prim, k)
         if instances:
@@ -287,8 +324,8 @@ class _Writer:
                 color = layer.pxr.Gf.Vec3f(*to_linear(rgb).tolist())
                 layer.primvar(prim, primvar_of(surface), "color3f", color, "constant")
         else:
-            for number, name in enumerate(self._names):
-                self._paint(layer.over(f"{path}/{name}"), k, number)
+            for number in np.flatnonzero(self._worn[k]).tolist():
+                self._paint(layer.over(f"{path}/{self._names[number]}"), k, number)
         self._count(k)
 
     def _paint(self, prim: Any, k: int, number: int) -> None:
@@ -326,6 +363,14 @@ class _Writer:
             self._progress("agents", k + 1, len(self.recording))
 
 
-def _prototype(can: bool) -> str:
-    """Path of the prototype whose bones can stretch, or can't."""
-    return f"{PROTOTYPES}/{'StretchedBody' if can else 'Body'}"
+def _prototype(look: int, can: bool) -> str:
+    """Path of a look's prototype whose bones can stretch, or can't."""
+    return f"{PROTOTYPES}/{'StretchedBody' if can else 'Body'}_{look}"
+
+
+def _meshes(can: bool) -> str:
+    return f"{PROTOTYPES}/{'StretchedMeshes' if can else 'Meshes'}"
+
+
+def _skeleton(can: bool) -> str:
+    return f"{PROTOTYPES}/{'StretchedSkeleton' if can else 'Skeleton'}"

@@ -53,16 +53,14 @@ def add_skinned_mesh(
     layer: Layer,
     path: str,
     mesh: SkinnedMesh,
-    rig: Rig,
     names: tuple[str, ...],
     offsets: tuple[NDArray[np.float32], ...],
 ) -> Any:
-    """Write a mesh in the bind pose, bound to a rig's joints, with its blend shapes."""
+    """Write a mesh in the bind pose, bound to the skeleton's joints, with its blend shapes."""
     prim = add_mesh(layer, path, mesh, apis=("SkelBindingAPI",))
     set_points(layer, prim, mesh.positions[None], mesh.normals[None])
     width = mesh.joints.shape[1]
-    joints = layer.integers(rig.skin[mesh.joints].reshape(-1))
-    layer.primvar(prim, "skel:jointIndices", "int[]", joints, "vertex", width)
+    bind_joints(layer, prim, mesh.joints)
     weights = layer.floats(mesh.weights.reshape(-1))
     layer.primvar(prim, "skel:jointWeights", "float[]", weights, "vertex", width)
     layer.set(prim, "primvars:skel:geomBindTransform", "matrix4d", layer.pxr.Gf.Matrix4d(1.0))
@@ -80,6 +78,12 @@ def add_skinned_mesh(
         layer.set(prim, "skel:blendShapes", "token[]", tokens, uniform=True)
         layer.relate(prim, "skel:blendShapeTargets", *(f"{path}/{name}" for name in shapes))
     return prim
+
+
+def bind_joints(layer: Layer, prim: Any, joints: NDArray[Any]) -> None:
+    """Author which joints (V, n) of a rig move each vertex."""
+    indices = layer.integers(joints.reshape(-1))
+    layer.primvar(prim, "skel:jointIndices", "int[]", indices, "vertex", joints.shape[1])
 
 
 def joint_paths(rig: Rig) -> tuple[str, ...]:
@@ -154,26 +158,36 @@ def set_display_color(layer: Layer, prim: Any, mesh: SkinnedMesh, rgb: NDArray[A
     layer.primvar(prim, "displayColor", "color3f[]", values, interpolation)
 
 
-def split_by_shade(layer: Layer, path: str, mesh: SkinnedMesh, light: str, dark: str) -> None:
-    """Bind a mesh to a material with its agent's colour; dark faces, as eyes are, keep theirs.
+def split_by_shade(layer: Layer, path: str, mesh: SkinnedMesh) -> None:
+    """Part a mesh into light faces and dark ones, as eyes are, if it has any of these.
 
-    A preview surface can't multiply vertex colours by an agent's, so shades of the rest are lost.
+    A preview surface can't multiply vertex colours by an agent's, so light faces lose their shades
+    to the agent's colour; dark ones keep the mesh's.
     """
-    shade = mesh.colors[:, :3].max(axis=1)[mesh.triangles].mean(axis=1)
-    prim = layer.layer.GetPrimAtPath(path)
-    if not (shade < DARK).any():
-        layer.relate(prim, "material:binding", light)
+    dark = _dark_faces(mesh)
+    if not dark.any():
         return
+    prim = layer.layer.GetPrimAtPath(path)
     layer.set(prim, "subsetFamily:materialBind:familyType", "token", "partition", uniform=True)
-    for name, faces, material in (
-        ("light", shade >= DARK, light),
-        ("dark", shade < DARK, dark),
-    ):
+    for name, faces in (("light", ~dark), ("dark", dark)):
         subset = layer.prim(f"{path}/{name}", "GeomSubset", apis=(_BINDING,))
         layer.set(subset, "elementType", "token", "face", uniform=True)
         layer.set(subset, "familyName", "token", "materialBind", uniform=True)
         layer.set(subset, "indices", "int[]", layer.integers(np.flatnonzero(faces)))
-        layer.relate(subset, "material:binding", material)
+
+
+def bind_shades(layer: Layer, path: str, mesh: SkinnedMesh, light: str, dark: str) -> None:
+    """Bind what references a mesh of `split_by_shade` to the materials of its faces."""
+    if not _dark_faces(mesh).any():
+        layer.relate(layer.layer.GetPrimAtPath(path), "material:binding", light)
+        return
+    for name, material in (("light", light), ("dark", dark)):
+        layer.relate(layer.over(f"{path}/{name}"), "material:binding", material)
+
+
+def _dark_faces(mesh: SkinnedMesh) -> NDArray[np.bool_]:
+    dark: NDArray[np.bool_] = mesh.colors[:, :3].max(axis=1)[mesh.triangles].mean(axis=1) < DARK
+    return dark
 
 
 def _add_texture(

@@ -8,6 +8,7 @@ One thread creates, uses and deletes all of them. They change no state that pygl
 vertex arrays are unbound after each draw, texture unit 0 stays the active one.
 """
 
+from .adopted import AdoptedContext, adopt_context
 from .buffer import Buffer
 from .context import ContextInfo, create_offscreen_context, describe_context, open_window
 from .feedback import capture, capture_into
@@ -15,8 +16,9 @@ from .framebuffer import Framebuffer
 from .objects import collect, live_objects
 from .program import Program
 from .query import GpuTimer
+from .saved_state import SavedState, prepare_state
 from .source import ShaderSource, compose
-from .state import check_errors, gl_errors, reset_state
+from .state import check_errors, gl_errors, reset_state, takes_srgb_bytes
 from .texture import Texture2D
 from .texture_array import TextureArray
 from .texture_format import TextureFormat
@@ -24,6 +26,7 @@ from .vertex_array import Primitive, VertexArray
 from .vertex_input import Attribute, VertexInput
 
 __all__ = [
+    "AdoptedContext",
     "Attribute",
     "Buffer",
     "ContextInfo",
@@ -31,12 +34,14 @@ __all__ = [
     "GpuTimer",
     "Primitive",
     "Program",
+    "SavedState",
     "ShaderSource",
     "Texture2D",
     "TextureArray",
     "TextureFormat",
     "VertexArray",
     "VertexInput",
+    "adopt_context",
     "capture",
     "capture_into",
     "check_errors",
@@ -47,5 +52,7 @@ __all__ = [
     "gl_errors",
     "live_objects",
     "open_window",
+    "prepare_state",
     "reset_state",
+    "takes_srgb_bytes",
 ]

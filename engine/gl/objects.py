@@ -1,12 +1,15 @@
 """Life and death of GL objects: names, the deletion queue and the live counters.
 
-Python may run a finaliser on any thread and at any time, GL only on the thread and in the context
-of the object. So a finaliser merely queues the name, and `collect` deletes what has been queued
-for the current context. Creating an object collects too.
+Buffers, textures, renderbuffers and programs belong to all contexts that share objects; vertex
+arrays, framebuffers and queries to the one that they were made in. Python may run a finaliser on
+any thread and at any time, GL only on the thread of the context, while that, or one that shares
+with it, is current. So a finaliser merely queues the name, and `collect` deletes what has been
+queued for the current context and thread. Creating an object collects too.
 """
 
 from __future__ import annotations
 
+import threading
 import weakref
 from collections import Counter, deque
 from typing import Any
@@ -24,8 +27,13 @@ _GENERATED = {
     "query": ("glGenQueries", "glDeleteQueries"),
 }
 
+_OF_ONE_CONTEXT = ("vertex array", "framebuffer", "query")
+
 _live: Counter[str] = Counter()
-_doomed: deque[tuple[str, int, weakref.ref[Any]]] = deque()
+_doomed: deque[tuple[str, int, weakref.ref[Any], int]] = deque()
+"""Kind, name, context or share group, and thread."""
+_groups: weakref.WeakKeyDictionary[Any, weakref.WeakSet[Any]] = weakref.WeakKeyDictionary()
+"""Contexts of each share group."""
 
 
 class GLObject:
@@ -56,7 +64,9 @@ class GLObject:
             name = int(generated.value)
         self._kind = kind
         self._name = name
-        self._finalizer = weakref.finalize(self, _doomed.append, (kind, name, weakref.ref(context)))
+        owner = context if kind in _OF_ONE_CONTEXT else _group(context)
+        entry = (kind, name, weakref.ref(owner), threading.get_ident())
+        self._finalizer = weakref.finalize(self, _doomed.append, entry)
         self._finalizer.atexit = False
         _live[kind] += 1
 
@@ -89,14 +99,16 @@ def collect() -> int:
 
     Names whose context no longer exists died with it and are only taken off the counters.
     """
-    context = current_context()
+    context, thread = current_context(), threading.get_ident()
+    here = () if context is None else (context, _group(context))
     deleted = 0
     for _ in range(len(_doomed)):
         entry = _doomed.popleft()
-        kind, name, owner = entry
-        if owner() is None:
+        kind, name, reference, home = entry
+        owner = reference()
+        if owner is None or not _exists(owner):
             _live[kind] -= 1
-        elif owner() is context:
+        elif home == thread and any(owner is one for one in here):
             _delete(kind, name)
             _live[kind] -= 1
             deleted += 1
@@ -111,6 +123,25 @@ def live_objects() -> dict[str, int]:
     Queued deletions still count until `collect` has run.
     """
     return {kind: count for kind, count in sorted(_live.items()) if count}
+
+
+def context_exists(context: Any) -> bool:
+    """Whether a context has not been destroyed, as those of closed windows are."""
+    return getattr(context, "canvas", context) is not None
+
+
+def _group(context: Any) -> Any:
+    """What stands for all contexts that share objects with `context`."""
+    group = getattr(context, "object_space", context)
+    if group is not context:
+        _groups.setdefault(group, weakref.WeakSet()).add(context)
+    return group
+
+
+def _exists(owner: Any) -> bool:
+    """Whether a context exists, or any of a share group's."""
+    members = _groups.get(owner)
+    return context_exists(owner) if members is None else any(map(context_exists, members))
 
 
 def _delete(kind: str, name: int) -> None:

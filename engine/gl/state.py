@@ -41,6 +41,38 @@ class DrawTarget:
         (gl.glEnable if self.srgb else gl.glDisable)(gl.GL_FRAMEBUFFER_SRGB)
 
 
+def takes_srgb_bytes() -> bool:
+    """Whether the bound framebuffer holds bytes that GL doesn't encode as sRGB on the way in.
+
+    A screen takes them for sRGB all the same, so shaders must encode. A framebuffer of floating
+    point numbers, or without colour, is left in linear light.
+    """
+    buffer = get_integer("GL_DRAW_BUFFER0")
+    if buffer == gl.GL_NONE:
+        return False
+    default = get_integer("GL_DRAW_FRAMEBUFFER_BINDING") == 0
+    if default:
+        front = buffer in (gl.GL_FRONT, gl.GL_FRONT_LEFT)
+        buffer = gl.GL_FRONT_LEFT if front else gl.GL_BACK_LEFT
+    if _attachment(buffer, gl.GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == gl.GL_NONE:
+        return False
+    if _attachment(buffer, gl.GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING) == gl.GL_SRGB:
+        return False
+    kind = _attachment(buffer, gl.GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE)
+    return bool(kind == gl.GL_UNSIGNED_NORMALIZED)
+
+
+def write_srgb(on: bool) -> None:
+    """Whether GL encodes what shaders write where the framebuffer is in sRGB."""
+    (gl.glEnable if on else gl.glDisable)(gl.GL_FRAMEBUFFER_SRGB)
+
+
+def _attachment(buffer: int, what: int) -> int:
+    value = gl.GLint(0)
+    gl.glGetFramebufferAttachmentParameteriv(gl.GL_DRAW_FRAMEBUFFER, buffer, what, value)
+    return int(value.value)
+
+
 _ERRORS = {
     0x0500: "GL_INVALID_ENUM",
     0x0501: "GL_INVALID_VALUE",

@@ -6,6 +6,7 @@ texture unit that no pass uses, so they never change what a pass has bound.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Any, Literal
 
 import numpy as np
@@ -19,7 +20,7 @@ Filter = Literal["nearest", "linear"]
 Wrap = Literal["clamp", "repeat"]
 
 # GL 3.3 guarantees units 0 to 47; passes use the first 16.
-_SPARE_UNIT = 47
+SPARE_UNIT = 47
 _WRAPS = {"clamp": "GL_CLAMP_TO_EDGE", "repeat": "GL_REPEAT"}
 
 
@@ -52,6 +53,8 @@ class Texture(GLObject):
         self._format = format
         self._levels = levels
         target = self._attach()
+        # A bound unpack buffer would be read, although no texels are given.
+        set_unpacking()
         for level in range(levels):
             self._allocate(level)
         mag = "GL_LINEAR" if chosen == "linear" else "GL_NEAREST"
@@ -104,11 +107,12 @@ class Texture(GLObject):
         gl.glGenerateMipmap(target)
         self._detach()
 
+    @abstractmethod
     def _allocate(self, level: int) -> None:
-        raise NotImplementedError
+        """Make the memory of a level."""
 
     def _attach(self) -> int:
-        gl.glActiveTexture(gl.GL_TEXTURE0 + _SPARE_UNIT)
+        gl.glActiveTexture(gl.GL_TEXTURE0 + SPARE_UNIT)
         target = int(getattr(gl, self._target))
         gl.glBindTexture(target, self.name)
         return target
@@ -259,6 +263,7 @@ def set_unpacking() -> None:
     gl.glBindBuffer(gl.GL_PIXEL_UNPACK_BUFFER, 0)
     gl.glPixelStorei(gl.GL_UNPACK_ALIGNMENT, 1)
     for parameter in (
+        gl.GL_UNPACK_SWAP_BYTES,
         gl.GL_UNPACK_ROW_LENGTH,
         gl.GL_UNPACK_IMAGE_HEIGHT,
         gl.GL_UNPACK_SKIP_PIXELS,

@@ -1,6 +1,7 @@
 """The drawing side's copy of where agents are and what they wear: 256 agents a texture row.
 
-The tables are copied whole when their component's version changed, which is seldom.
+The tables are copied whole when their component's version changed, which is seldom; of people who
+walk about, only the rows they are in.
 """
 
 from __future__ import annotations
@@ -9,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...components import Appearance, Body, Placement
+from ...components.placement import GROUP
 from ..crowd.physique import Physique
 from ..gl.program import Program
 from ..gl.texture import Texture2D
 from ..gl.texture_format import TextureFormat
 
 PLACE_UNIT, LOOKS_UNIT = 3, 4
-AGENTS_PER_ROW = 256
+AGENTS_PER_ROW = GROUP
 
 
 def table_rows(agents: int) -> int:
@@ -36,28 +38,32 @@ class AgentTables:
         self._rows = table_rows(agents)
         self._agents = agents
         self._versions = [(-1, -1), (-1, -1)]
+        self._touches = 0
         self._place = self._texture(3, TextureFormat.RGBA32F)
-        self._looks = self._texture(5, TextureFormat.SRGB8_ALPHA8)
+        self._looks = self._texture(6, TextureFormat.SRGB8_ALPHA8)
 
     def update_place(
         self, placement: Placement, body: Body | None = None, physique: Physique | None = None
     ) -> int:
         """Copy places and builds if they changed; bytes copied."""
         versions = (placement.version, -1 if body is None else body.version)
+        touches, self._touches = self._touches, placement.touches
         if self._versions[0] == versions:
-            return 0
+            copied = 0
+            if touches != placement.touches:
+                for row in np.flatnonzero(placement.touched > touches):
+                    some = slice(
+                        row * AGENTS_PER_ROW, min((row + 1) * AGENTS_PER_ROW, self._agents)
+                    )
+                    table = _places(placement, body, physique, some)
+                    self._place.write(table.reshape(1, -1, 4), y=int(row))
+                    copied += table.nbytes
+            return copied
         self._versions[0] = versions
-        table = self._empty(12, np.float32)
-        table[: self._agents, :3] = placement.position.T
-        table[: self._agents, 3] = placement.scale
-        table[: self._agents, 4] = np.sin(placement.yaw)
-        table[: self._agents, 5] = np.cos(placement.yaw)
-        table[: self._agents, 10] = 1.0
-        if body is not None and physique is not None:
-            table[: self._agents, 8] = body.girth
-            table[: self._agents, 9] = body.head
-            table[: self._agents, 10] = physique.legs[body.kind]
-        return self._write(self._place, table)
+        whole = self._empty(12, np.float32)
+        everyone = slice(0, self._agents)
+        whole[everyone] = _places(placement, body, physique, everyone)
+        return self._write(self._place, whole)
 
     def update_looks(self, appearance: Appearance) -> int:
         """Copy colours if they changed; bytes copied."""
@@ -65,10 +71,12 @@ class AgentTables:
         if self._versions[1] == versions:
             return 0
         self._versions[1] = versions
-        table = self._empty(20, np.uint8)
-        parts = ("skin", "hair", "shirt", "trousers", "shoes")
+        table = self._empty(24, np.uint8)
+        parts = ("skin", "hair", "shirt", "trousers", "shoes", "second")
         for number, part in enumerate(parts):
             table[: self._agents, 4 * number : 4 * number + 4] = getattr(appearance, part)
+        # Alpha is the one channel that is not decoded to linear light.
+        table[: self._agents, 23] = appearance.pattern
         return self._write(self._looks, table)
 
     def bind(self, program: Program) -> None:
@@ -92,3 +100,19 @@ class AgentTables:
     def _write(self, texture: Texture2D, table: NDArray[np.generic]) -> int:
         texture.write(table.reshape(self._rows, -1, 4))
         return table.nbytes
+
+
+def _places(
+    placement: Placement, body: Body | None, physique: Physique | None, some: slice
+) -> NDArray[np.float32]:
+    """(n, 12) what the table of places holds for some agents."""
+    yaw = placement.yaw[some]
+    table = np.zeros((len(yaw), 12), np.float32)
+    table[:, :3] = placement.position[:, some].T
+    table[:, 3] = placement.scale[some]
+    table[:, 4], table[:, 5] = np.sin(yaw), np.cos(yaw)
+    table[:, 10] = 1.0
+    if body is not None and physique is not None:
+        table[:, 8], table[:, 9] = body.girth[some], body.head[some]
+        table[:, 10] = physique.legs[body.kind[some]]
+    return table

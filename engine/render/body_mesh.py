@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from ..assets.character import Material, SkinnedMesh
 from ..crowd.morphs import MorphWeights
+from ..crowd.regions import SURFACES, Regions
 
-SURFACES = ("skin", "hair", "shirt", "trousers", "shoes")
-"""Materials of these names take the agent's colour; the order is that of the looks table."""
+PARTED = 254
+"""The surface of what is coloured by its height in the bind pose."""
 NO_SURFACE = 255
 
 NORMALISED = ("color", "morph")
@@ -63,6 +64,7 @@ def make_batches(
     meshes: Sequence[SkinnedMesh],
     materials: Sequence[Material],
     morphs: MorphWeights | None = None,
+    regions: Regions | None = None,
 ) -> tuple[Batch, ...]:
     """Join meshes into as few batches as their pictures and sidedness allow.
 
@@ -72,6 +74,8 @@ def make_batches(
         Of a character.
     morphs
         How their vertices take part in the morphs; not at all if None.
+    regions
+        Of the character; None if materials without a name of a surface keep their colours.
     """
     groups: dict[tuple[int, bool], list[SkinnedMesh]] = {}
     for mesh in meshes:
@@ -81,7 +85,7 @@ def make_batches(
     return tuple(
         Batch(
             vertices=np.concatenate(
-                [_vertices(mesh, materials[mesh.material], morphs) for mesh in group]
+                [_vertices(mesh, materials[mesh.material], morphs, regions) for mesh in group]
             ),
             indices=_indices(group),
             image=None if picture < 0 else materials[picture].image,
@@ -110,7 +114,10 @@ def split_batch(batch: Batch, joints: NDArray[np.bool_]) -> tuple[Batch, Batch]:
 
 
 def _vertices(
-    mesh: SkinnedMesh, material: Material, morphs: MorphWeights | None
+    mesh: SkinnedMesh,
+    material: Material,
+    morphs: MorphWeights | None,
+    regions: Regions | None,
 ) -> NDArray[np.void]:
     out = np.zeros(len(mesh.positions), VERTEX)
     out["position"], out["normal"], out["uv"] = mesh.positions, mesh.normals, mesh.uvs
@@ -119,6 +126,8 @@ def _vertices(
         out["morph"] = np.round(255.0 * morphs.of(mesh)).astype(np.uint8)
     varies = material.name in SURFACES
     out["surface"] = SURFACES.index(material.name) if varies else NO_SURFACE
+    if regions is not None and regions.parted and not regions.keeps_colours(mesh):
+        out["surface"] = PARTED
     base = np.ones(4) if varies else np.array(material.base_color, np.float64)
     linear: NDArray[np.float64] = np.clip(mesh.colors * base, 0.0, 1.0)
     out["color"] = np.round(255.0 * _to_srgb(linear)).astype(np.uint8)

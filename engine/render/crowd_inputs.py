@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ...components import AgentAnimID, Appearance, BakedAnim, Body, Detail, Placement, Transition
 from ..crowd.morphs import MorphWeights
 from ..crowd.physique import Physique
+from ..crowd.regions import Regions
 from ..gl.program import Program
 from ..gl.source import Defines
 from ..overrides.override_set import OverrideSet
@@ -38,6 +39,7 @@ class CrowdColumns:
     overrides: OverrideSet | None = None
     body: Body | None = None
     physique: Physique | None = None
+    regions: Regions | None = None
 
 
 class CrowdInputs:
@@ -97,6 +99,11 @@ class CrowdInputs:
         """How meshes take part in the bind-pose morphs."""
         physique = self._columns.physique
         return None if physique is None else physique.morphs
+
+    @property
+    def regions(self) -> Regions | None:
+        """Parts of the crowd's character; None where shirts have no patterns."""
+        return self._columns.regions
 
     @property
     def revision(self) -> int:

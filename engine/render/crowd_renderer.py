@@ -9,7 +9,8 @@ from ..assets.character import Character
 from .crowd_inputs import CrowdColumns, CrowdInputs
 from .figure_pass import FigurePass
 from .frame import Frame
-from .skinned_pass import InstanceList, SkinnedPass
+from .skinned_pass import SkinnedPass
+from .variant_lists import VariantLists
 
 
 @dataclass(slots=True)
@@ -46,6 +47,7 @@ class CrowdRenderer:
         self.inputs = CrowdInputs(columns)
         self._revision = self.inputs.revision
         self._skinned: SkinnedPass | None = None
+        self._lists: list[VariantLists] = []
         self._figures = FigurePass(height, self.inputs.defines)
         self.counts = DrawCounts()
 
@@ -58,9 +60,12 @@ class CrowdRenderer:
             For an override that does not compile.
         """
         uploaded = self.inputs.update(tick)
-        lists = (*self._current().lists, self._figures.agents)
-        for agents, ids in zip(lists, self._columns.detail.agents, strict=True):
-            uploaded += agents.write(ids)
+        self._current()
+        *near, far = self._columns.detail.agents
+        body = self._columns.body
+        for lists, ids in zip(self._lists, near, strict=True):
+            uploaded += lists.write(ids, None if body is None else body.choice)
+        uploaded += self._figures.agents.write(far)
         self.counts.uploaded = uploaded
 
     def draw(self, frame: Frame) -> None:
@@ -78,8 +83,12 @@ class CrowdRenderer:
     def _current(self) -> SkinnedPass:
         """The pass whose programs have the overrides that there are now."""
         if self._skinned is None or self._revision != self.inputs.revision:
-            lists = [InstanceList() for _ in range(len(Level) - 1)]
-            made = SkinnedPass(self._character, self.inputs, lists)
+            levels = range(len(Level) - 1)
+            self._lists = [VariantLists(self._character, level) for level in levels]
+            draws = [draw for lists in self._lists for draw in lists.draws]
+            made = SkinnedPass(
+                draws, self._character.materials, self.inputs, regions=self.inputs.regions
+            )
             if self._skinned is not None:
                 self._skinned.delete()
             self._skinned, self._revision = made, self.inputs.revision

@@ -27,6 +27,8 @@ class Frame:
         Pose tick and the fraction of it that has passed.
     sun
         (3,) unit vector towards the sun.
+    encode
+        Whether shaders write sRGB instead of linear light; see `tifo.engine.gl.takes_srgb_bytes`.
     """
 
     view: NDArray[np.float32]
@@ -35,6 +37,7 @@ class Frame:
     tick: int
     alpha: float
     sun: NDArray[np.float32] = field(default_factory=SUN.copy)
+    encode: bool = False
 
     def apply(self, program: Program) -> None:
         """Set the uniforms of ``lib/frame.glsl`` and use the program."""
@@ -43,3 +46,4 @@ class Frame:
         program["projection"] = self.projection
         program["eye"] = -self.view[:3, :3].T @ self.view[:3, 3]
         program["sun"] = self.sun
+        program["encode"] = self.encode

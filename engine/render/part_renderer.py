@@ -8,8 +8,11 @@ they cost nothing.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...components import Attachment, Detail, Level
 from ..assets.character import Character
+from ..assets.variants import one_look
 from ..gl.buffer import Buffer
 from ..gl.feedback import capture_into
 from ..gl.vertex_array import VertexArray
@@ -17,7 +20,7 @@ from ..gl.vertex_input import Attribute, VertexInput
 from .crowd_inputs import CrowdColumns, CrowdInputs
 from .crowd_renderer import DrawCounts
 from .frame import Frame
-from .skinned_pass import InstanceList, SkinnedPass
+from .skinned_pass import InstanceList, SkinnedPass, level_draws
 
 _ROWS = 12
 """Numbers of an affine matrix."""
@@ -106,7 +109,7 @@ class PartRenderer:
         columns: CrowdColumns | None,
     ) -> None:
         self._attachment = attachment
-        self._character = character
+        self._character = one_look(character)
         self._detail = detail
         self._parent = parent
         self._own = None if columns is None else CrowdInputs(columns, parent)
@@ -119,11 +122,15 @@ class PartRenderer:
         """The passes, with the overrides that the crowd has now."""
         levels = range(len(Level) - 1)
         character, inputs = self._character, self._inputs
+        materials = character.materials
         if self._attachment.follows_body:
-            return SkinnedPass(character, inputs, [InstanceList() for _ in levels]), None
+            own = None if inputs.regions is None else replace(inputs.regions, parted=False)
+            plain = level_draws(character, [InstanceList() for _ in levels])
+            return SkinnedPass(plain, materials, inputs, regions=own), None
         lists = tuple(HookedList() for _ in levels)
         hooks = HookPass(self._attachment, self._parent, lists)
-        return SkinnedPass(character, inputs, lists, frozenset({"HOOKED"})), hooks
+        draws = level_draws(character, lists)
+        return SkinnedPass(draws, materials, inputs, frozenset({"HOOKED"})), hooks
 
     def _remake(self) -> None:
         made = self._make()

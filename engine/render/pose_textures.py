@@ -53,15 +53,13 @@ class StreamTextures:
         self._ring_markers = TextureArray((markers, rows), store.capacity, rgba)
         self._static_markers = Texture2D((markers, len(store.static)), rgba)
         self._streams = Texture2D((rows + store.uniques, 1), rgba)
-        self._everything = True
+        self._dirty = store.mirror()
 
     def update(self, tick: int) -> int:
         """Copy the slices and rows that changed since the last call; bytes copied."""
         store = self._pool.store
-        dirty = store.take_dirty()
-        slices = range(store.capacity) if self._everything else sorted(dirty.slices)
-        statics = range(len(store.static)) if self._everything else sorted(dirty.static_rows)
-        self._everything = False
+        dirty = self._dirty.take()
+        slices, statics = sorted(dirty.slices), sorted(dirty.static_rows)
         copied = 0
         for number in slices:
             flat = store.ring[number].reshape(store.stream_rows, -1, 4)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..assets.character import Character
+from ..assets.character import Character, Material, SkinnedMesh
+from ..crowd.regions import Regions
 from ..gl.buffer import Buffer
 from ..gl.program import Program
 from ..gl.texture import Texture2D
@@ -63,41 +64,53 @@ class InstanceList:
         self.buffer.delete()
 
 
+Draw = tuple[Sequence[SkinnedMesh], InstanceList]
+
+
+def level_draws(character: Character, lists: Sequence[InstanceList]) -> list[Draw]:
+    """A list of agents for each level; missing coarser ones show the coarsest there is."""
+    meshes = [character.meshes, *character.lower_levels]
+    return [(meshes[min(level, len(meshes) - 1)], agents) for level, agents in enumerate(lists)]
+
+
 class SkinnedPass:
-    """Draws a character's meshes, one level of detail a list of agents.
+    """Draws meshes, some for each of several lists of agents.
 
     Parameters
     ----------
-    character
-        Meshes and materials; missing coarser levels are replaced by the coarsest there is.
+    draws
+        Meshes and who is drawn with them; the pass deletes the lists with itself.
+    materials
+        Of the meshes.
     inputs
         The crowd's, which make the programs.
-    lists
-        For each level who is drawn at it; the pass deletes them with itself.
     switches
         Defined in the programs as well.
+    regions
+        Where the parts and the patterns of shirts are; None for neither.
     """
 
     def __init__(
         self,
-        character: Character,
+        draws: Sequence[Draw],
+        materials: Sequence[Material],
         inputs: CrowdInputs,
-        lists: Sequence[InstanceList],
         switches: frozenset[str] = frozenset(),
+        regions: Regions | None = None,
     ) -> None:
         self._inputs = inputs
         self._programs: dict[frozenset[str], Program] = {}
-        meshes = [character.meshes, *character.lower_levels]
-        self.lists = tuple(lists)
-        self._levels = tuple(
+        self._regions = regions
+        if regions is not None:
+            switches |= {"PARTED" if regions.parted else "PATTERNED"}
+        self.lists = tuple(agents for _, agents in draws)
+        self._draws = tuple(
             tuple(
                 self._upload(part, agents, switches | own)
-                for batch in make_batches(
-                    meshes[min(level, len(meshes) - 1)], character.materials, inputs.morphs
-                )
+                for batch in make_batches(meshes, materials, inputs.morphs, regions)
                 for part, own in _parts(batch, inputs.overridden)
             )
-            for level, agents in enumerate(self.lists)
+            for meshes, agents in draws
         )
 
     def draw(self, frame: Frame, inputs: CrowdInputs) -> int:
@@ -106,9 +119,11 @@ class SkinnedPass:
         for program in self._programs.values():
             frame.apply(program)
             inputs.bind(program, frame.tick, frame.alpha, markers=False)
-            for level, agents in zip(self._levels, self.lists, strict=True):
-                for batch in level:
-                    if batch.program is program and agents.count:
+            if self._regions is not None:
+                _bind_regions(program, self._regions)
+            for batches, agents in zip(self._draws, self.lists, strict=True):
+                for batch in batches if agents.count else ():
+                    if batch.program is program:
                         triangles += self._draw(batch, agents.count)
         return triangles
 
@@ -140,8 +155,8 @@ class SkinnedPass:
 
     def delete(self) -> None:
         """Delete everything on the GPU."""
-        for level in self._levels:
-            for batch in level:
+        for batches in self._draws:
+            for batch in batches:
                 batch.vertex_array.delete()
                 for buffer in batch.buffers:
                     buffer.delete()
@@ -151,6 +166,16 @@ class SkinnedPass:
             agents.delete()
         for program in self._programs.values():
             program.delete()
+
+
+def _bind_regions(program: Program, regions: Regions) -> None:
+    """What turns a place in the bind pose into heights of the trunk."""
+    scale = 1.0 / regions.trunk
+    across = regions.across * scale
+    program["trunk_across"] = (float(across[0]), float(across[1]), -regions.middle * scale)
+    program["trunk_up"] = (scale, -regions.waist * scale)
+    if regions.parted:
+        program["tint"] = regions.tint
 
 
 def _parts(

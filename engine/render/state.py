@@ -21,7 +21,6 @@ def opaque(*, cull: bool = True, depth_write: bool = True, coverage: bool = Fals
     gl.glDepthFunc(gl.GL_LEQUAL)
     gl.glDepthMask(depth_write)
     gl.glDisable(gl.GL_BLEND)
-    gl.glEnable(gl.GL_FRAMEBUFFER_SRGB)
     gl.glFrontFace(gl.GL_CCW)
     gl.glCullFace(gl.GL_BACK)
     _switch(gl.GL_CULL_FACE, cull)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..animation.clip_bank import ClipBank
 from ..animation.controllers import Controller
+from ..animation.controllers.parameters import unknown_path
 from ..animation.plan import EvaluationPlan
 
 
@@ -104,6 +105,21 @@ class ControllerAccess(Generic[Handle]):
         finished before the next begins.
         """
         self._plan.travel(int(self._tree_rows([self._index(stream)])[0]), path, state)
+
+    def start_state(self, stream: Handle, path: str, state: str) -> None:
+        """Put a state machine into a state at once; the state starts anew and nothing blends."""
+        self._plan.start_state(int(self._tree_rows([self._index(stream)])[0]), path, state)
+
+    def machines(self, stream: Handle) -> tuple[str, ...]:
+        """Paths of the state machines of a stream's controller."""
+        return tuple(self._plan.machines(int(self._tree_rows([self._index(stream)])[0])))
+
+    def machine_states(self, stream: Handle, path: str) -> tuple[str, ...]:
+        """Names of the states of a machine; ValueError if there is none at the path."""
+        found = self._plan.machines(int(self._tree_rows([self._index(stream)])[0]))
+        if path not in found:
+            raise unknown_path(path, found, "state machine")
+        return found[path]
 
     def phase(self, rows: ArrayLike) -> NDArray[np.float64]:
         """Phases of streams in their clips, in [0, 1).

@@ -4,12 +4,13 @@ Rows 0 to ``stream_rows - 1`` are streams; each has a ring of `capacity` slices,
 ``tick mod capacity`` holds the pose of that pose tick. Rows from ``stream_rows`` on are static, one
 palette each: the bind pose, which agents without a motion show; two rows for each unique, its
 previous and its current pose in turns; and the transition slots. The drawing side mirrors the
-arrays; `take_dirty` says what changed since it last asked.
+arrays; each mirror is told what changed since it last asked.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,13 +35,19 @@ def ring_capacity(history: int) -> int:
     return 1 << (history + 1).bit_length()
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class DirtyPoses:
-    """What the drawing side has to copy: ring slices, static rows, and the stream table."""
+    """What one mirror has to copy: ring slices, static rows, and the stream table."""
 
     slices: set[int] = field(default_factory=set)
     static_rows: set[int] = field(default_factory=set)
     streams: bool = True
+
+    def take(self) -> DirtyPoses:
+        """What changed since the last call; the record starts anew."""
+        taken = DirtyPoses(self.slices, self.static_rows, self.streams)
+        self.slices, self.static_rows, self.streams = set(), set(), False
+        return taken
 
 
 class PoseStore:
@@ -79,7 +86,7 @@ class PoseStore:
     """
 
     __slots__ = (
-        "_dirty",
+        "_mirrors",
         "capacity",
         "ring",
         "ring_markers",
@@ -128,7 +135,7 @@ class PoseStore:
         self.unique_head = np.zeros(uniques, np.int64)
         self.unique_valid = np.zeros(uniques, np.int32)
         self.unique_newest = np.zeros(uniques, np.int64)
-        self._dirty = DirtyPoses(set(range(self.capacity)), set(range(static_rows)))
+        self._mirrors: WeakSet[DirtyPoses] = WeakSet()
 
     @property
     def bind_row(self) -> int:
@@ -151,11 +158,14 @@ class PoseStore:
 
     def mark_slice(self, tick: int) -> None:
         """Record that the slice of `tick` changed."""
-        self._dirty.slices.add(self.slice_of(tick))
+        number = self.slice_of(tick)
+        for mirror in self._mirrors:
+            mirror.slices.add(number)
 
     def mark_streams(self) -> None:
         """Record that heads, valid counts or states of streams or uniques changed."""
-        self._dirty.streams = True
+        for mirror in self._mirrors:
+            mirror.streams = True
 
     def write_static(
         self,
@@ -177,10 +187,15 @@ class PoseStore:
         self.static[row] = palette
         if markers is not None:
             self.static_markers[row, :, :3] = markers
-        self._dirty.static_rows.update(np.atleast_1d(row).tolist())
+        rows = np.atleast_1d(row).tolist()
+        for mirror in self._mirrors:
+            mirror.static_rows.update(rows)
 
-    def take_dirty(self) -> DirtyPoses:
-        """What changed since the last call; the record starts anew."""
-        taken = self._dirty
-        self._dirty = DirtyPoses(streams=False)
-        return taken
+    def mirror(self) -> DirtyPoses:
+        """A record of its own for one more mirror, in which everything is dirty at first.
+
+        It is kept up to date for as long as the caller holds it.
+        """
+        record = DirtyPoses(set(range(self.capacity)), set(range(len(self.static))))
+        self._mirrors.add(record)
+        return record

@@ -1,5 +1,7 @@
 #version 330 core
 // Strokes between seven joints: head, top of the spine, hips, hands and feet.
+#include "lib/frame.glsl"
+#include "lib/output.glsl"
 
 flat in vec2 f_hips;
 flat in vec4 f_head;
@@ -43,5 +45,5 @@ void main()
     if (head < clothed)
         light = p.y > f_side.y ? f_hair : f_skin;
     light *= 1.0 + f_side.x * clamp(p.x - top.x, -f_radius.x, f_radius.x);
-    colour = vec4(light, clamp(0.5 - body, 0.0, 1.0));
+    colour = written(light, clamp(0.5 - body, 0.0, 1.0));
 }

@@ -6,6 +6,7 @@
 #include "lib/light.glsl"
 #include "lib/agent.glsl"
 #include "lib/pose.glsl"
+#include "lib/shirt.glsl"
 #ifdef OVERLAYS
 #include "lib/overlay.glsl"
 
@@ -110,7 +111,9 @@ void main()
     f_side.x = (right_light - left_light) / (right_light + left_light) / f_radius.x;
     f_skin = lit(agent_colour(id, 0), normal, 0.95, hips);
     f_hair = lit(agent_colour(id, 1), normal, 0.95, hips);
-    f_shirt = lit(agent_colour(id, 2), normal, 0.95, hips);
+    vec4 second = agent_second(id);
+    vec3 shirt = mix(agent_colour(id, 2), second.rgb, mean_share(int(second.a + 0.5)));
+    f_shirt = lit(shirt, normal, 0.95, hips);
     // Legs lie in the shade of the people around.
     f_trousers = lit(agent_colour(id, 3), normal, 0.6, hips);
     bool away = dot(vec3(body.turn.x, 0.0, body.turn.y), eye - hips) < 0.0;

@@ -1,8 +1,8 @@
 // One agent's row of the crowd's tables, 256 agents a texture row.
-// Provides Body, fetch_body(), seated(), to_stadium(), to_model(), agent_colour().
+// Provides Body, fetch_body(), seated(), to_stadium(), to_model(), agent_colour(), agent_second().
 uniform sampler2D placement;   // 3 texels: x y z scale; sin and cos of the yaw; girth, head, legs
 uniform vec3 seat;             // hips sitting and standing, model space; metres of the seat, or 0
-uniform sampler2D looks;       // 5 texels, sRGB: skin hair shirt trousers shoes
+uniform sampler2D looks;       // 6 texels, sRGB: skin hair shirt trousers shoes, second and pattern
 
 struct Body {
     vec3 place;
@@ -56,5 +56,11 @@ vec3 to_model(Body body, vec3 stadium)
 
 vec3 agent_colour(int agent, int surface)
 {
-    return texelFetch(looks, agent_texel(agent, 5, surface), 0).rgb;
+    return texelFetch(looks, agent_texel(agent, 6, surface), 0).rgb;
+}
+
+// The shirt's other colour, and the number of the pattern.
+vec4 agent_second(int agent)
+{
+    return texelFetch(looks, agent_texel(agent, 6, 5), 0) * vec4(1.0, 1.0, 1.0, 255.0);
 }

@@ -3,3 +3,4 @@ uniform mat4 view;
 uniform mat4 projection;
 uniform vec3 eye;        // metres, stadium frame
 uniform vec3 sun;        // unit vector towards the sun
+uniform bool encode;     // the framebuffer takes sRGB bytes and doesn't encode by itself

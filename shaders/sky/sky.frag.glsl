@@ -1,6 +1,7 @@
 #version 330 core
 // A clear afternoon with a few clouds near the horizon.
 #include "lib/frame.glsl"
+#include "lib/output.glsl"
 
 in vec3 f_ray;
 out vec4 colour;
@@ -28,5 +29,5 @@ void main()
     cloud = smoothstep(0.52, 0.85, cloud) * smoothstep(0.0, 0.12, ray.y);
     sky = mix(sky, vec3(0.95, 0.95, 0.96), 0.75 * cloud);
     sky += vec3(1.0, 0.85, 0.6) * pow(max(dot(ray, sun), 0.0), 220.0);
-    colour = vec4(sky, 1.0);
+    colour = written(sky, 1.0);
 }

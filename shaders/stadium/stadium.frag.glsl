@@ -2,6 +2,7 @@
 // Surfaces of the stadium; the ids are those of engine/crowd/stadium_mesh.py.
 #include "lib/frame.glsl"
 #include "lib/light.glsl"
+#include "lib/output.glsl"
 #include "lib/pattern.glsl"
 
 in vec3 f_place;
@@ -43,5 +44,5 @@ void main()
     vec3 light = shade(albedo, normal, 0.0, open_sky);
     if (f_surface == BOARD)
         light = max(light, 0.75 * albedo);
-    colour = vec4(haze(tone(light), f_place), 1.0);
+    colour = written(haze(tone(light), f_place), 1.0);
 }

@@ -16,6 +16,7 @@ from tifo.benchmarks.pictures.canvas import BLUE, GROUND, Canvas
 from tifo.benchmarks.pictures.figures import joint_places
 from tifo.benchmarks.pictures.machine import FAN
 from tifo.benchmarks.pictures.overlay import make_poses
+from tifo.benchmarks.pictures.reactions import SIZE, head_places, make_stand, run_to
 from tifo.benchmarks.pictures.ring import DRIFT_TO, DRIFTER, HISTORY, make_crowd, offsets
 from tifo.engine.animation.clip_bank import ClipBank
 from tifo.engine.animation.controllers import ClipNode
@@ -24,7 +25,8 @@ from tifo.engine.assets.spectator import builtin_spectator
 from tifo.engine.streams.pool import StreamPool
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-DRAWN = tuple(name for name in PICTURES if name != "lab")
+DRAWN = ("blend_space", "state_machine", "ring", "overlay")
+"""Those that are drawn without OpenGL."""
 
 
 @pytest.mark.parametrize("name", DRAWN)
@@ -37,6 +39,12 @@ def test_pictures_are_written_and_lie_in_docs(name: str, tmp_path: Path) -> None
     assert 0.01 < (np.abs(pixels - GROUND).max(axis=2) > 30).mean() < 0.6
     # Fonts and libraries differ a little between machines.
     assert np.abs(pixels - before).mean() < 1.0
+
+
+def test_every_picture_lies_in_docs() -> None:
+    sizes = {name: (DOCS / f"{name}.png").stat().st_size for name in PICTURES}
+    assert min(sizes.values()) > 20_000
+    assert sum(sizes.values()) < 8_000_000
 
 
 def test_an_unknown_picture_is_named(capsys: Any) -> None:
@@ -130,3 +138,28 @@ def test_a_canvas_is_smooth() -> None:
 
 def _square(rows: np.ndarray) -> np.ndarray:
     return np.vstack([rows, [0, 0, 0, 1]])
+
+
+def test_pictures_of_reactions_lie_in_docs() -> None:
+    for name, rows in (("before_and_after", 2), ("long_and_short", 2), ("one_side", 1)):
+        with Image.open(DOCS / f"{name}.png") as kept:
+            assert kept.width == SIZE[0]
+            assert kept.height >= rows * SIZE[1]
+
+
+@pytest.mark.gl
+def test_circles_are_round_heads(gl: Any) -> None:
+    """The head of somebody who sits is about 1.25 m above the tread, of who stands about 1.6."""
+    simulation = make_stand(rows=2, columns=12, children=0.0, props=0.0)
+    run_to(simulation, 10)
+    crowd = simulation.crowd
+    sits = np.flatnonzero(crowd.behaviour.posture == 0)
+    feet = crowd.placement.position[:, sits].T
+    head = head_places(simulation, sits) - feet
+    assert 1.0 < np.median(head[:, 1]) < 1.4
+    assert np.hypot(head[:, 0], head[:, 2]).max() < 0.8
+    before = np.median(head[:, 1])
+    assert run_to(simulation, 205)[-1] > 0.9
+    after = head_places(simulation, sits) - feet
+    assert np.median(after[:, 1]) > before + 0.25
+    simulation.close()

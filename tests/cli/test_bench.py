@@ -44,7 +44,8 @@ def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
     systems = result["systems"]
     assert isinstance(systems, dict)
     assert set(systems) == {
-        *("behaviour", "transition", "dilation", "controller", "history", "clipevent", "detail")
+        *("behaviour", "transition", "dilation", "clap", "controller", "history", "clipevent"),
+        *("walking", "record", "detail"),
     }
     assert all(set(figure) >= FIGURES for figure in systems.values())
     assert result["goal_tick_ms"] > 0  # type: ignore[operator]
@@ -79,6 +80,20 @@ def test_memory_counts_what_a_crowd_has(capsys: pytest.CaptureFixture[str]) -> N
     assert "baked ones" in capsys.readouterr().out
 
 
+def test_scaling_measures_the_sizes_up_to_the_one_given(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    result = figures(capsys, "scaling", "--agents", "300", "--runs", "5")
+    situations = result["situations"]
+    assert isinstance(situations, dict)
+    assert list(situations) == [
+        f"300, {name}" for name in ("quiet", "tick of a goal", "10 s after it", "the worst of them")
+    ]
+    assert (result["agents"], result["runs"]) == (300, 5)
+    goal, worst = situations["300, tick of a goal"], situations["300, the worst of them"]
+    assert worst["min_ms"] >= goal["min_ms"] > 0
+
+
 def test_scripting(capsys: pytest.CaptureFixture[str]) -> None:
     words = ("scripting", "--nodes", "50", "--listeners", "3", "--runs", "10")
     result = figures(capsys, *words)
@@ -86,6 +101,18 @@ def test_scripting(capsys: pytest.CaptureFixture[str]) -> None:
     assert result["emits_per_second"] == pytest.approx(1e6 / result["emit_us"], rel=0.01)  # type: ignore[operator]
     assert main(["bench", *words]) == 0
     assert "emissions a second" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_ten_thousand_nodes_take_less_than_5_ms_a_frame(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The fastest of many, since other programs run on this machine too."""
+    result = figures(capsys, "scripting", "--runs", "100")
+    assert (result["nodes"], result["listeners"]) == (10_000, 10)
+    assert result["min_ms"] < 5.0  # type: ignore[operator]
+    assert result["frame_after_adding"]["min_ms"] < 10.0  # type: ignore[index]
+    assert result["emits_per_second"] > 100_000  # type: ignore[operator]
 
 
 @pytest.mark.slow
@@ -135,3 +162,16 @@ def test_impossible_sizes_are_refused(
 ) -> None:
     assert main(["bench", *words]) == 1
     assert capsys.readouterr().err.startswith("tifo: ")
+
+
+def test_variety(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("variety", "--agents", "900", "--streams", "64", "--history", "30")
+    assert main(["bench", *words, "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    drawn, cast = result["moments"]["as drawn"], result["moments"]["cast"]
+    assert cast["pairs"] == drawn["pairs"] > 5000
+    assert cast["score"] < drawn["score"]
+    assert cast["same_both"] == 0.0
+    assert "3 s after a goal" in result["moments"]
+    assert main(["bench", *words]) == 0
+    assert "within 3 seats" in capsys.readouterr().out

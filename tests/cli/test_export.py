@@ -59,3 +59,15 @@ def test_mistakes_are_one_sentence(
     assert error.startswith("tifo: ")
     assert error.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_schedule_of_clips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "clips.csv"
+    words = [*SMALL, "--seconds", "2", "--goal", "home", "--schedule", str(out)]
+    assert main(["export", *words]) == 0
+    assert "clip instances of" in capsys.readouterr().out
+    assert out.read_text("utf-8").startswith("agent,seat,clip,state,start,end,source_start")
+    assert main(["export", *SMALL, "--schedule", str(out)]) == 1
+    assert "--seconds is 0, but a schedule needs a time" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["export", *words, "--out", str(tmp_path / "a.glb")])

@@ -70,15 +70,14 @@ class RefNode:
     """One place in the tree."""
 
     def __init__(self, tree: Reference, kind: Controller, path: str) -> None:
-        self.tree, self.kind, self.path = tree, kind, path
+        self.tree, self.kind, self.path, self.children = tree, kind, path, []
         machine = isinstance(kind, StateMachine)
-        self.children = []
         for place, child in kind.children():
-            name = place if machine else (child.name or place)
-            self.children.append(RefNode(tree, child, f"{path}/{name}" if path else name))
+            name = f"{path}/" * bool(path) + (place if machine else (child.name or place))
+            self.children.append(RefNode(tree, child, name))
         self.share = 1.0  # of the tree's pose, where it was seen
+        # Of a clip seen in this tick: whether it started, its time before, and its step.
         self.played: tuple[bool, float, float] | None = None
-        """Of a clip seen in this tick: whether it started, its time before, and its step."""
         self._declare()
         self.restart()
 
@@ -269,7 +268,8 @@ class RefNode:
         if way.trigger:
             self.tree.values[self._at(way.trigger)] = 0.0
         clip, _ = self.children[before].leading()
-        phase = clip.time / clip.clip.duration
+        at = clip.time / clip.clip.duration
+        phase = at % 1.0 if clip.loops else min(max(at, 0.0), 1.0)
         anew = self._enter(target)
         if way.sync and anew:
             for node in self.children[target].below():

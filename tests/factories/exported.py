@@ -166,6 +166,25 @@ def _skinned(primitive: Any) -> bool:
     return primitive.attributes.WEIGHTS_0 is not None
 
 
+def worn_meshes(crowd: Any, agent: int, level: int = 0) -> list[Any]:
+    """Meshes of a level that an agent of a crowd wears, by what the columns are said to be."""
+    choices: dict[str, list[str]] = {}
+    for mesh in crowd.character.meshes:
+        if mesh.variant is not None:
+            known = choices.setdefault(mesh.variant.group, [])
+            if mesh.variant.choice not in known:
+                known.append(mesh.variant.choice)
+    own = {
+        group: (known + [None] * 255)[crowd.body.choice[row, agent]]
+        for row, (group, known) in enumerate(choices.items())
+    }
+    return [
+        mesh
+        for mesh in (crowd.character.meshes, *crowd.character.lower_levels)[level]
+        if mesh.variant is None or own[mesh.variant.group] == mesh.variant.choice
+    ]
+
+
 def shown_points(crowd: Any, agent: int, tick: int, alpha: float, level: int = 0) -> Array:
     """Where a crowd's rules put an agent's vertices, in the stadium."""
     ids = np.array([agent])
@@ -180,7 +199,7 @@ def shown_points(crowd: Any, agent: int, tick: int, alpha: float, level: int = 0
     yaw, scale = float(place.yaw[agent]), float(place.scale[agent])
     turn = Rotation.from_rotvec([0.0, yaw, 0.0]).as_matrix()
     found = []
-    for mesh in (crowd.character.meshes, *crowd.character.lower_levels)[level]:
+    for mesh in worn_meshes(crowd, agent, level):
         bind = morphed_positions(
             mesh, physique.morphs, float(body.girth[agent]), float(body.head[agent])
         )

@@ -34,9 +34,19 @@ class CheeringStand(Node3D):
 
 
 def test_the_example_runs(capsys: Any) -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    code, _ = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     exec(compile(code, "page", "exec"), {"__name__": "page_of_scripting"})
     assert capsys.readouterr().out == "home: 1, board at 2.0 m\n"
+
+
+def test_the_replay_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _, code = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {"tree": tifo.SceneTree(), "tifo": tifo}
+    names["tree"].run(0.1)
+    exec(compile(code, "page", "exec"), names)
+    assert names["log"].ticks == 6
+    assert names["tree"].tick == 12
 
 
 def test_the_scene_file_is_read(folder: Path) -> None:
@@ -58,6 +68,8 @@ def test_names_that_the_page_gives_exist() -> None:
     here = re.findall(r"^\|[^|]*\|([^|]*)\|$", PAGE, re.MULTILINE)
     words = set(re.findall(r"`(?:tree\.)?([a-z_]{4,})", " ".join(here)))
     known = {name for cls in (Node3D, tifo.SceneTree, tifo.Tween) for name in dir(cls)}
+    known |= {name for node in tifo.nodes.__all__ for name in dir(getattr(tifo.nodes, node))}
+    known |= {"parameters", "playback", "tifo"}
     known |= {*tifo.__all__, "input", "input_map", "autoloads", "choices", "group", "changed"}
     known |= {"binds", "deferred", "persist", "node", "await", "async", "from", "from_"}
     assert words <= known, words - known

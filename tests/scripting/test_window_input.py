@@ -157,6 +157,14 @@ def test_gamepads(tree: SceneTree, adapter: WindowInput) -> None:
         InputEventJoypadButton("DPAD_LEFT", True, 0),
         *(InputEventJoypadButton(f"DPAD_{name}", False, 0) for name in ("RIGHT", "DOWN", "UP")),
     ]
+    tree.input_map.add_action("jump", InputEventJoypadButton("A"))
+    tree.input_map.add_action("run", InputEventJoypadMotion("LEFT_X"), deadzone=0.1)
+    first.dispatch_event("on_button_press", first, "a")
+    first.dispatch_event("on_stick_motion", first, "leftstick", pyglet.math.Vec2(0.75, 0.0))
+    assert not tree.input.is_action_pressed("jump"), "at the next tick"
+    tree.advance(1 / 60)
+    assert tree.input.is_action_just_pressed("jump")
+    assert tree.input.get_action_strength("run") > 0.5
     adapter.on_disconnect(second)
     assert InputEventJoypadButton("A", False, 1) in taken(tree)
     third = FakeController()

@@ -254,6 +254,6 @@ def test_mechanisms_can_wake_agents(simulation: Simulation) -> None:
     crowd.wake("section 0", rapid=True)
     simulation.run(seconds=TICK)
     told = crowd.select("section 0")
-    assert (crowd.in_state("sit_clap") | crowd.in_state("arm_up"))[told].mean() > 0.8
+    assert (crowd.in_state("sit_clap") | crowd.in_state("clap"))[told].mean() > 0.8
     with pytest.raises(ValueError, match="state is 'flying', expected one of start"):
         crowd.in_state("flying")

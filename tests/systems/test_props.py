@@ -1,4 +1,4 @@
-"""Who has a cap, a scarf or a flag."""
+"""Who has a cap, a scarf, a flag, a foam hand or a drum."""
 
 from __future__ import annotations
 
@@ -57,3 +57,41 @@ def test_the_same_seed_gives_the_same_people_the_same_props() -> None:
         simulation.close()
     np.testing.assert_array_equal(bits[0], bits[1])
     assert not np.array_equal(bits[0], bits[2])
+
+
+def test_a_few_ultras_drum_in_time() -> None:
+    simulation = tifo.Simulation(SPEC.replace(props=1.0, ultras=0.3, uniques=4))
+    crowd = simulation.crowd
+    drummers = np.flatnonzero(crowd.parts["drum"].visible)
+    assert 3 <= len(drummers) < 0.1 * len(crowd)
+    assert (crowd.team.fervour[drummers] > 1.3).all()
+    assert (crowd.body.kind[drummers] == 0).all()
+    for name in ("cap", "flag", "foam_hand", "scarf"):
+        assert not crowd.parts[name].visible[drummers].any()
+    foam = np.flatnonzero(crowd.parts["foam_hand"].visible)
+    assert len(foam) > 20
+    assert crowd.parts["foam_hand"].attachment.joint == crowd.character.skeleton.index("hand_r")
+
+    def arms(count: int) -> np.ndarray:
+        simulation.run(seconds=count / 30)
+        clock, skeleton = simulation.clock, crowd.character.skeleton
+        chest, hand = skeleton.index("chest"), skeleton.index("hand_r")
+        palettes = crowd.palettes(drummers, clock.pose_tick).astype(float)
+        square = np.tile(np.eye(4), (len(drummers), 2, 1, 1))
+        square[:, :, :3] = palettes[:, [chest, hand]]
+        return (np.linalg.inv(square[:, 0]) @ square[:, 1])[:, :3, :3]
+
+    before = arms(30)
+    after = arms(5)
+    # All hands are turned alike against their chests, and not as they were before.
+    assert np.abs(after - after[0]).max() < 0.02
+    assert np.abs(after - before).max() > 0.1
+    simulation.close()
+
+
+def test_nobody_drums_where_nothing_is_left_to_move_arms() -> None:
+    for changes in ({"uniques": 0}, {"poses": "baked"}):
+        simulation = tifo.Simulation(SPEC.replace(props=1.0, ultras=0.3, **changes))
+        assert not simulation.crowd.parts["drum"].visible.any()
+        assert simulation.crowd.parts["foam_hand"].visible.any()
+        simulation.close()

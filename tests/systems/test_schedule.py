@@ -130,8 +130,8 @@ def test_a_users_own_system_runs_between_phases(factories: ModuleType, esper_wor
 
 def test_phases_are_in_the_order_of_a_frame() -> None:
     assert [phase.name for phase in sorted(Phase, reverse=True)] == [
-        "BEHAVIOUR", "TRANSITIONS", "DILATION", "CONTROLLERS", "HISTORY", "CLIP_EVENTS",
-        "DETAIL", "RENDER",
+        "WALKING", "BEHAVIOUR", "TRANSITIONS", "DILATION", "CLAPS", "CONTROLLERS", "HISTORY",
+        "CLIP_EVENTS", "RECORD", "DETAIL", "RENDER",
     ]  # fmt: skip
 
 

@@ -1,40 +1,34 @@
-"""Streams that a crowd leaves free for its users."""
+"""Stream rows that a crowd leaves free for motions of its users."""
 
 from __future__ import annotations
 
+import esper
 import numpy as np
 import pytest
 
-from tifo import CrowdSpec, Simulation
+import tifo
 
 
-@pytest.mark.parametrize(("children", "spare"), [(0.0, 5), (0.2, 5), (0.2, 0)])
-def test_spare_streams_are_free_and_can_be_used(children: float, spare: int) -> None:
-    spec = CrowdSpec(
-        layout="stand",
-        rows=4,
-        columns=10,
-        streams=200,
-        spare_streams=spare,
-        children=children,
-        old=0.0,
-        props=0.0,
-    )
-    simulation = Simulation(spec)
-    crowd = simulation.crowd
-    assert crowd.pool is not None
+@pytest.mark.parametrize("idle", [False, True])
+def test_spare_streams_are_free_and_stay_awake(esper_world: str, idle: bool) -> None:
+    spec = tifo.CrowdSpec(rows=4, columns=10, layout="stand", streams=48, history=14, seed=2)
+    plain = tifo.spawn_crowd(spec, tifo.build_seats(spec), tifo.builtin_spectator())
+    assert plain.pool is not None
+    taken = int(plain.pool.alive.sum())
+    more = spec.replace(spare_streams=5, rest_idle=idle)
+    crowd = tifo.spawn_crowd(more, tifo.build_seats(more), tifo.builtin_spectator())
+    pool = crowd.pool
+    assert pool is not None
+    assert int(pool.alive.sum()) == taken, "twins don't take them"
+    assert len(pool.alive) == len(plain.pool.alive) + 5
+    # The crowd itself is the same.
     assert crowd.anim is not None
-    free = int(np.count_nonzero(~crowd.pool.alive))
-    assert spare <= free <= spare + 1  # the two types' twins come in pairs
-    assert (len(crowd.pool.twins) > 0) == (children > 0)
-    if spare:
-        stream = crowd.pool.add("cheer")
-        crowd.pool.add_twin(stream, "child")
-        crowd.transition_to_streamed(np.arange(len(crowd)), stream, duration=0.0)
-        simulation.run(seconds=0.1)
-        rows = crowd.anim.row[0]
-        assert (crowd.pool.clip[rows] == crowd.pool.bank.index("cheer")).all()
-        assert (crowd.pool.twins.kind[rows] == crowd.body.kind).all()
-    else:
-        assert free < 2
-    simulation.close()
+    assert plain.anim is not None
+    np.testing.assert_array_equal(crowd.anim.start[0], plain.anim.start[0])
+    streams = [pool.add("wave") for _ in range(5)]
+    for system in crowd.systems():
+        esper.add_processor(system)
+    for _ in range(60):  # four seconds; idle streams rest after two
+        esper.process(4 / 60)
+    assert pool.running.all() != idle
+    assert all(pool.running[stream.row] for stream in streams)

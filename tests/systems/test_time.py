@@ -213,11 +213,8 @@ def test_claps_are_heard_at_the_rate_at_which_hands_meet(spectators: MakeSimulat
     crowd = simulation.crowd
     assert crowd.pool is not None
     assert crowd.anim is not None
-    clapping = crowd.library.names.index("clap")
-    crowd.motion.wanted[:] = clapping
-    crowd.behaviour.until[:] = NEVER
+    crowd.guide(motion="clap")
     simulation.run(seconds=6.0)
-    crowd.motion.wanted[:] = clapping
     heard = np.zeros(len(crowd))
     calls: list[int] = []
 
@@ -228,15 +225,18 @@ def test_claps_are_heard_at_the_rate_at_which_hands_meet(spectators: MakeSimulat
         np.testing.assert_array_equal(crowd.clip_events("clap_contact")[0], agents)
 
     end = crowd.on_clip_event("clap_contact", listen)
+    expected = np.zeros(len(crowd))
     for _ in range(300):
-        crowd.motion.wanted[:] = clapping
         simulation.run(seconds=2 / 60)
+        expected += crowd.company.rhythm.speed / 30.0
     end()
-    clappers = _shown(simulation, "clap") & crowd.seat.occupied
+    clappers = crowd.seat.occupied
     assert clappers.sum() > 100
-    # 300 pose ticks are 10 s; eight claps take 2.4 s at speed 1.
-    expected = 10.0 / 0.3 * crowd.pool.speed[crowd.anim.row[0]]
-    assert np.abs(heard - expected)[clappers].max() <= 1.0
+    # Everybody claps at a beat of its own, whichever stream it is on: two or three times a second.
+    assert np.ptp(expected[clappers]) > 8.0
+    away = np.abs(heard - expected)[clappers]
+    assert np.median(away) <= 0.8
+    assert np.percentile(away, 95) <= 2.0
     assert heard[~crowd.seat.occupied].max() == 0.0
     assert calls == sorted(set(calls))
     count = heard.sum()

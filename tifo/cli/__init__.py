@@ -19,6 +19,7 @@ _COMMANDS = {
     "bench": "measure how fast it runs here",
     "export": "write spectators to a glTF or USD file for Blender, Maya and others",
     "inspect": "say what is in a glTF or BVH file",
+    "assets": "build the files that tifo ships, from its own code",
     "doctor": "check graphics, drivers and dependencies, and say what to fix",
 }
 

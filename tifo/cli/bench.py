@@ -5,9 +5,13 @@ evaluate: all streams for one pose tick (sampling, kinematics, palettes, store);
 tick: a whole tick of a stadium without drawing, system by system.
 frame: pictures of a stadium from each camera.
 memory: what poses and clips take, streamed and baked, and what a tick copies.
+variety: how alike neighbours look and move, before and after casting.
 scripting: a frame of many nodes with `_process`, and emissions of a signal.
+scaling: behaviour alone, quiet and after goals, of 1,000 agents to 1,000,000 or --agents.
 behaviour: applause, rhythm, waves, emotions and parties: what comes out of the models beside what
   is published of people, and what a tick of them costs; with --plot, curves as a picture.
+soak: a match of --minutes with --events random events, without poses, as fast as it goes: whether
+  people end up doing what they did in the beginning, and nothing gets stuck or grows.
 """
 
 from __future__ import annotations
@@ -19,21 +23,33 @@ from typing import Any
 
 from .demo import parse_size
 
-BENCHMARKS = ("evaluate", "tick", "frame", "memory", "behaviour", "scripting")
+BENCHMARKS = (
+    "evaluate",
+    "tick",
+    "frame",
+    "memory",
+    "variety",
+    "behaviour",
+    "scripting",
+    "scaling",
+    "soak",
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``tifo bench``."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument("benchmark", choices=BENCHMARKS, help="what to measure")
-    parser.add_argument("--agents", type=int, default=65_000, metavar="N", help="seats, all taken")
+    parser.add_argument("--agents", type=int, metavar="N", help="seats, all taken (65000)")
     parser.add_argument("--streams", type=int, default=256, metavar="N", help="animation streams")
     parser.add_argument("--joints", type=int, default=82, metavar="N", help="joints (not in frame)")
     parser.add_argument("--history", type=int, default=60, metavar="N", help="poses a stream keeps")
     parser.add_argument(
         "--slots", type=int, default=800, metavar="N", help="transition slots (tick, memory)"
     )
-    parser.add_argument("--runs", type=int, metavar="N", help="how many to time (300; frame: 10)")
+    parser.add_argument(
+        "--runs", type=int, metavar="N", help="how many to time (300; frame: 10; soak: 1)"
+    )
     parser.add_argument(
         "--tree", choices=("plain", "deep"), default="plain", help="what streams play (evaluate)"
     )
@@ -42,6 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--listeners", type=int, default=10, metavar="N", help="of a signal (scripting)"
     )
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (frame)")
+    parser.add_argument("--minutes", type=float, default=90.0, help="of the match (soak)")
+    parser.add_argument("--events", type=int, default=300, metavar="N", help="random ones (soak)")
     parser.add_argument("--plot", metavar="FILE.png", help="draw curves (behaviour)")
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
@@ -52,6 +70,8 @@ def run(options: argparse.Namespace) -> int:
     """Run a benchmark and print its figures; the exit code."""
     if options.runs is not None and not 1 <= options.runs <= 100_000:
         raise ValueError(f"--runs is {options.runs}, expected 1 to 100000")
+    if options.agents is None:
+        options.agents = 1_000_000 if options.benchmark == "scaling" else 65_000
     if options.json:
         print(json.dumps(_measure(options)))
         return 0
@@ -112,6 +132,29 @@ def _measure(options: argparse.Namespace) -> dict[str, Any]:
         def measure() -> dict[str, Any]:
             return behaviour(agents=options.agents, runs=options.runs or 200, plot=options.plot)
 
+    elif options.benchmark == "scaling":
+        from ..benchmarks.scaling import scaling
+
+        def measure() -> dict[str, Any]:
+            return scaling(agents=options.agents, runs=options.runs or 60)
+
+    elif options.benchmark == "soak":
+        from ..benchmarks.soak import soak
+
+        def measure() -> dict[str, Any]:
+            return soak(
+                agents=options.agents,
+                minutes=options.minutes,
+                events=options.events,
+                runs=options.runs or 1,
+            )
+
+    elif options.benchmark == "variety":
+        from ..benchmarks.variety import variety
+
+        def measure() -> dict[str, Any]:
+            return variety(agents=options.agents, **common)
+
     else:
         from ..benchmarks.frame import frame
 
@@ -134,6 +177,12 @@ def _report(console: Any, result: dict[str, Any]) -> None:
     if result["benchmark"] == "memory":
         _report_memory(console, result)
         return
+    if result["benchmark"] == "variety":
+        _report_variety(console, result)
+        return
+    if result["benchmark"] == "soak":
+        _report_soak(console, result)
+        return
     table = Table("", "median ms", "10 %", "90 %", "lowest", "runs")
     for column in table.columns[1:]:
         column.justify = "right"
@@ -142,7 +191,7 @@ def _report(console: Any, result: dict[str, Any]) -> None:
         keys = ("median_ms", "p10_ms", "p90_ms", "min_ms")
         table.add_row(name, *(f"{figures[key]:.3f}" for key in keys), str(figures["runs"]))
 
-    if result["benchmark"] != "behaviour":
+    if result["benchmark"] not in ("behaviour", "scaling"):
         row("whole", result)
     for group in ("systems", "cameras", "situations"):
         for name, figures in result.get(group, {}).items():
@@ -206,6 +255,53 @@ def _report_figures(console: Any, figures: list[dict[str, str]]) -> None:
     for figure in figures:
         table.add_row(figure["name"], figure["measured"], figure["published"])
     console.print(table)
+
+
+def _report_variety(console: Any, result: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    columns = ("clone score", "worst", "found", "same look", "same motion", "both")
+    table = Table("", *columns)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, figures in result["moments"].items():
+        shares = (f"{figures[key]:.4%}" for key in ("same_look", "same_motion", "same_both"))
+        score, worst = f"{figures['score']:.5f}", f"{figures['worst']:.3f}"
+        table.add_row(name, score, worst, f"{figures['found']:.0f}", *shares)
+    console.print(table)
+    pairs = next(iter(result["moments"].values()))["pairs"]
+    console.print(f"{pairs:,.0f} pairs of neighbours within 3 seats; shares are of these")
+    _report_environment(console, result)
+
+
+def _report_soak(console: Any, result: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    console.print(
+        f"{result['minutes']:g} minutes with {result['events']} events in {result['seconds']:,} s, "
+        f"{result['times_faster']:g} times as fast as they pass"
+    )
+    table = Table("states that changed most", "first 2 minutes", "last 2 minutes")
+    for name, (before, after) in result["shares"].items():
+        table.add_row(name, f"{before:.2%}", f"{after:.2%}")
+    console.print(table)
+    warm, end = (result[f"memory_{when}_bytes"] / 2**20 for when in ("warm", "end"))
+    before, after = result["mean_excitement"]
+    for what, value in (
+        ("states entered", f"{result['states_entered']} of {result['states']}"),
+        ("reacting at once, at most", f"{result['most_reacting']:.0%}"),
+        ("clapping at once, at most", f"{result['most_clapping']:.0%}"),
+        ("mean excitement", f"{before:.3f} before, {after:.3f} after"),
+        ("longer in a state than its limit, at most", f"{result['overstayed_seconds']:.2f} s"),
+        ("memory after a quarter of the events", f"{warm:,.1f} MB"),
+        ("memory at the end", f"{end:,.1f} MB"),
+        ("state", result["state_hash"]),
+    ):
+        console.print(f"{what}: {value}")
+    if result["runs"] > 1:
+        same = "the same state" if result["same_hash"] else "[bold red]different states[/]"
+        console.print(f"{result['runs']} runs ended in {same}")
+    _report_environment(console, result)
 
 
 def _report_environment(console: Any, result: dict[str, Any]) -> None:

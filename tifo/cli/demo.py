@@ -25,12 +25,16 @@ _FROM_SPEC = (
     "ultras",
     "behaviour",
     "embarrassment",
+    "latecomers",
+    "stewards",
     "children",
     "old",
+    "women",
     "streams",
     "history",
     "slots",
     "props",
+    "tint",
     "poses",
     "offsets",
     "seed",
@@ -52,6 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     how.add_argument(
         "--seconds", type=float, metavar="S", help="stop after S seconds (headless: 6 if absent)"
     )
+    how.add_argument("--events", metavar="TOML", help="file with what happens, and when")
     how.add_argument("--screenshot", metavar="PNG", help="write the last picture")
     how.add_argument("--record", metavar="MP4", help="write a clip")
 
@@ -76,8 +81,16 @@ def add_crowd_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="METRES",
         help="metres a unit of BVH files, guessed if absent",
     )
-    kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float}
-    kinds.update({"embarrassment": float, "children": float, "old": float})
+    kinds: dict[str, Any] = {"occupancy": float, "props": float, "ultras": float, "tint": float}
+    kinds.update(
+        {
+            "latecomers": float,
+            "embarrassment": float,
+            "children": float,
+            "old": float,
+            "women": float,
+        }
+    )
     kinds.update({"poses": str, "offsets": str, "behaviour": str})
     for name in _FROM_SPEC:
         kind = kinds.get(name, int)
@@ -99,6 +112,7 @@ def run(options: argparse.Namespace) -> int:
         seconds=_seconds(options.seconds),
         screenshot=options.screenshot,
         record=options.record,
+        events=options.events,
         fullscreen=options.fullscreen,
         vsync=not options.no_vsync,
         scene=options.scene,

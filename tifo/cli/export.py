@@ -1,10 +1,13 @@
 """Write spectators to a file for Blender, Maya and others: glTF or USD, skinned or baked.
 
+With --schedule, write which clips they play, from when to when: CSV or JSON.
+
 The crowd is the one that tifo demo shows with the same options. Examples:
 
   tifo export --rows 10 --columns 30 --agents "rows 0-2" --seconds 4 --goal home --out crowd.glb
   tifo export --seats 20000 --baked --level 2 --out stadium.glb
   tifo export --agents 12 "3|45" "section 5" --seconds 2 --out stand.usdc
+  tifo export --seats 5000 --seconds 60 --goal home --schedule clips.csv
 """
 
 from __future__ import annotations
@@ -23,7 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``tifo export``."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     what = parser.add_argument_group("what is written")
-    what.add_argument("--out", required=True, metavar="FILE", help=".glb .gltf .usd .usda .usdc")
+    files = what.add_mutually_exclusive_group(required=True)
+    files.add_argument("--out", metavar="FILE", help=".glb .gltf .usd .usda .usdc")
+    files.add_argument("--schedule", metavar="FILE", help=".csv .json: clips, no geometry")
     what.add_argument("--format", choices=tuple(_ENDINGS), help="by the ending of FILE if absent")
     what.add_argument(
         "--agents",
@@ -59,6 +64,8 @@ def run(options: argparse.Namespace) -> int:
     from ..systems.recording import check_times, present_agents
     from ..systems.simulation import Simulation, character_of
 
+    if options.schedule is not None:
+        return _write_schedule(options)
     kind = _kind(options)
     path = check_target(options.out, _ENDINGS[kind])
     _check_switches(options, kind)
@@ -97,6 +104,39 @@ def run(options: argparse.Namespace) -> int:
     )
     if options.rigid:
         console.print(f"vertices are up to {1000 * done.deviation:.0f} mm off, bones are rigid")
+    return 0
+
+
+def _write_schedule(options: argparse.Namespace) -> int:
+    """Write which clips are played; the exit code."""
+    from rich.console import Console
+
+    from ..engine.behaviour.events import Goal
+    from ..engine.export.clip_schedule import KINDS
+    from ..engine.export.targets import check_target
+    from ..systems.recording import check_times
+    from ..systems.simulation import Simulation, character_of
+
+    path = check_target(options.schedule, KINDS)
+    check_times(options.start, options.seconds, options.fps)
+    if options.seconds == 0:
+        raise ValueError("--seconds is 0, but a schedule needs a time")
+    console = Console(highlight=False)
+    spec = spec_from(options)
+    with console.status("building the stadium"):
+        simulation = Simulation(spec, character_of(spec, options.scale))
+    with console.status(f"{options.start + options.seconds:g} s pass"):
+        simulation.run(seconds=options.start)
+        if options.goal is not None:
+            simulation.send(Goal(side=_SIDES[options.goal]))
+        schedule = simulation.crowd.schedule(options.seconds, _chosen(options.agents))
+    simulation.close()
+    schedule.write(path)
+    console.print(
+        f"wrote [bold]{path.resolve()}[/]: {len(schedule.agents):,} agents, {len(schedule):,} "
+        f"clip instances of {len(schedule.clips)} clips",
+        soft_wrap=True,
+    )
     return 0
 
 

@@ -19,6 +19,7 @@ from ..engine.animation.skeleton import Skeleton
 from ..engine.assets.character import Character, Material, SkinnedMesh
 from ..engine.assets.load import load_character
 from ..engine.assets.retarget import humanoid
+from ..engine.assets.variants import one_look, variant_groups
 from ..engine.errors import AssetError
 from .text import printable
 
@@ -106,6 +107,10 @@ def describe(path: str | Path, scale: float | None = None) -> dict[str, Any]:
         "lower_levels": [
             sum(len(mesh.triangles) for mesh in level) for level in character.lower_levels
         ],
+        "variants": {
+            group: [variant.choice for variant in choices]
+            for group, choices in variant_groups(character).items()
+        },
         "materials": [_material(material) for material in character.materials],
         "clips": [_clip(clip) for clip in character.clips],
         "notes": list(character.notes),
@@ -129,7 +134,7 @@ def _humanoid(skeleton: Skeleton) -> dict[str, Any]:
 
 def _size(character: Character) -> list[float]:
     """Width, height and depth of the most detailed level in the bind pose."""
-    corners = [mesh.positions for mesh in character.meshes if len(mesh.positions)]
+    corners = [mesh.positions for mesh in one_look(character).meshes if len(mesh.positions)]
     if not corners:
         return [0.0, 0.0, 0.0]
     size: list[float] = np.ptp(np.concatenate(corners), axis=0).tolist()
@@ -249,6 +254,8 @@ def _summary(entry: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if entry["lower_levels"]:
         coarser = ", ".join(f"{count:,}" for count in entry["lower_levels"])
         yield "lower", f"{coarser} triangles in the coarser levels"
+    for group, choices in entry["variants"].items():
+        yield printable(group), printable(f"one of {', '.join(choices)}")
     body = entry["humanoid"]
     if body["is_humanoid"]:
         missing = f"; missing {', '.join(body['missing'])}" if body["missing"] else ""

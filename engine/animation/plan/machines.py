@@ -155,6 +155,15 @@ def _enter(tables: Tables, nodes: Ints, target: Ints) -> NDArray[np.bool_]:
     return anew
 
 
+def enter_state(tables: Tables, nodes: Ints, target: Ints) -> None:
+    """Put machines into states at once: they start anew, and nothing blends or is travelled to."""
+    columns = tables.nodes
+    columns["goal"][nodes] = columns["source"][nodes] = -1
+    columns["state"][nodes] = target
+    columns["time"][nodes] = 0.0
+    tables.restart(tables.subtrees(tables.child(nodes, target))[0])
+
+
 def _synchronise(tables: Tables, nodes: Ints, phase: NDArray[np.float64]) -> None:
     """Put all clips of the machines' current states to some phases."""
     columns = tables.nodes
@@ -165,10 +174,14 @@ def _synchronise(tables: Tables, nodes: Ints, phase: NDArray[np.float64]) -> Non
 
 
 def clip_phases(tables: Tables, clips: Ints) -> NDArray[np.float64]:
-    """Times of clip nodes as shares of their durations, 0 to 1; 0 for a clip of no duration."""
+    """Times of clip nodes as shares of their durations, 0 to 1; 0 for a clip of no duration.
+
+    A node that was just put somewhere may stand beyond an end: loops are wrapped, others held.
+    """
     duration = tables.bank.duration[tables.nodes["clip"][clips]]
     share = tables.nodes["time"][clips] / np.where(duration > 0, duration, 1.0)
-    return np.where(duration > 0, np.clip(share, 0.0, 1.0), 0.0)
+    inside = np.where(tables.nodes["looping"][clips], share % 1.0, np.clip(share, 0.0, 1.0))
+    return np.where(duration > 0, inside, 0.0)
 
 
 def _weigh(tables: Tables, nodes: Ints) -> None:

@@ -12,6 +12,7 @@ Groups are changed where a stream comes or goes, never built anew.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
@@ -28,7 +29,7 @@ from ..skeleton import Skeleton
 from .customs import Customs
 from .evaluate import MAKE, WORK_OF, Work, advance_clips
 from .groups import Groups, Members, members_by
-from .machines import clip_phases
+from .machines import clip_phases, enter_state
 from .mixing import PoseMixer
 from .played import PlayedClips, played_clips, shares, tagged_clips
 from .tables import Offsets, Tables
@@ -319,14 +320,32 @@ class EvaluationPlan:
         ValueError
             If there is no such machine or state.
         """
+        node, number = self._state(stream, path, state)
+        self.tables.nodes["goal"][node] = number
+
+    def start_state(self, stream: int, path: str, state: str) -> None:
+        """Put a state machine into a state at once; the state starts anew and nothing blends.
+
+        Raises
+        ------
+        ValueError
+            If there is no such machine or state.
+        """
+        node, number = self._state(stream, path, state)
+        enter_state(self.tables, np.array([node]), np.array([number]))
+
+    def machines(self, stream: int) -> Mapping[str, tuple[str, ...]]:
+        """Names of the states of each state machine of a tree, by its path."""
+        return self._of(stream).program.machines
+
+    def _state(self, stream: int, path: str, state: str) -> tuple[int, int]:
         program = self._of(stream).program
         if path not in program.machines:
             raise unknown_path(path, program.machines, "state machine")
         states = program.machines[path]
         if state not in states:
             raise unknown_path(state, states, "state")
-        node = self._base[stream] + program.tree.paths.index(path)
-        self.tables.nodes["goal"][node] = states.index(state)
+        return int(self._base[stream]) + program.tree.paths.index(path), states.index(state)
 
 
 def _parameter(program: Program, path: str) -> Parameter:

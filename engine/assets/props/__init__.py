@@ -12,16 +12,21 @@ import numpy as np
 
 from ..character import Character
 from ..spectator.skeleton import spectator_skeleton
+from .beat import drumming
 from .cap import make_cap
+from .drum import make_drum
 from .flag import make_flag
+from .foam_hand import make_foam_hand
 from .prop import Prop
 from .scarf import make_scarf
 
-__all__ = ["PROPS", "Prop", "builtin_prop", "fits"]
+__all__ = ["PROPS", "Prop", "builtin_prop", "drumming", "fits"]
 
 _MAKERS: dict[str, Callable[[], Prop]] = {
     "cap": make_cap,
+    "drum": make_drum,
     "flag": make_flag,
+    "foam_hand": make_foam_hand,
     "scarf": make_scarf,
 }
 PROPS = tuple(_MAKERS)
@@ -35,8 +40,9 @@ def builtin_prop(name: str) -> Prop:
     Parameters
     ----------
     name
-        ``"cap"`` (on the head), ``"flag"`` (in the right hand; clips ``wave`` and ``hang``) or
-        ``"scarf"`` (round the neck; clips ``hang`` and ``swing``).
+        ``"cap"`` (on the head), ``"drum"`` (before the belly, with sticks in both hands),
+        ``"flag"`` (in the right hand; clips ``wave`` and ``hang``), ``"foam_hand"`` (over the right
+        hand) or ``"scarf"`` (round the neck; clips ``hang`` and ``swing``).
 
     Raises
     ------

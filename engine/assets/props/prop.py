@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,14 +34,17 @@ class Prop:
     character
         Meshes, skeleton and clips.
     hook
-        Joint of the spectator.
+        Joint of the spectator; None if the prop is skinned with several.
     transform
-        (4, 4) from the prop's model space to that joint's frame.
+        (4, 4) from the prop's model space to that joint's frame; None without a hook.
+    motion
+        Whose poses it shows, as `tifo.add_part` takes it.
     """
 
     character: Character
-    hook: str
-    transform: Array
+    hook: str | None
+    transform: Array | None
+    motion: Literal["own", "body"] = "own"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -25,11 +25,12 @@ def builtin_spectator() -> Character:
     Returns
     -------
     Character
-        24 joints, about 190 clips, and three levels of detail of about 2,800, 780 and 260 triangles
-        (the lower two in `Character.lower_levels`). Its materials are ``skin``, ``hair``,
-        ``shirt``, ``trousers`` and ``shoes``. It stands 1.75 m tall at the origin and faces +Z;
-        when seated, its feet stay there and the seat is 0.44 m high from z = -0.25 to -0.65. What
-        its clips are is in `MOTIONS`.
+        24 joints, about 190 clips, and three levels of detail of about 2,900, 950 and 320 triangles
+        (the lower two in `Character.lower_levels`). Its meshes are variants of ``body``, ``hair``
+        and ``beard``: see `variant_groups`, and `one_look` for a single person. Its materials are
+        ``skin``, ``hair``, ``shirt``, ``trousers`` and ``shoes``. It stands 1.75 m tall at the
+        origin and faces +Z; when seated, its feet stay there and the seat is 0.44 m high from
+        z = -0.25 to -0.65. What its clips are is in `MOTIONS`.
     """
     with as_file(files(__package__) / "spectator.glb") as path:
         character = grouped_by_level(load_gltf(path))

@@ -1,4 +1,4 @@
-"""From the body's signed distance to triangles, coarser ones and mirrored ones.
+"""From a solid's signed distance to triangles, coarser ones and mirrored ones.
 
 Meshing works on the left half, x >= 0, and mirrors the result, so the spectator is exactly
 symmetric and its surface closes at x = 0.
@@ -9,17 +9,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .body import body_distance
+from .solids import Distance
 
 Vertices = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-_LOW = np.array([0.0, -0.02, -0.20])
-_HIGH = np.array([0.74, 1.78, 0.24])
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+"""Lowest and highest corner."""
+
+BODY_BOX: Box = ((0.0, -0.02, -0.20), (0.74, 1.78, 0.24))
+HEAD_BOX: Box = ((0.0, 1.22, -0.24), (0.20, 1.84, 0.16))
 
 
-def half_surface(step: float) -> tuple[Vertices, Triangles]:
-    """Marching cubes over the left half of the body with cubes of `step` metres.
+def half_surface(distance: Distance, step: float, box: Box) -> tuple[Vertices, Triangles]:
+    """Marching cubes over the left half of a solid with cubes of `step` metres.
 
     The fine grid is only evaluated near the surface: a grid four times coarser tells where.
 
@@ -33,18 +36,19 @@ def half_surface(step: float) -> tuple[Vertices, Triangles]:
     from skimage.measure import marching_cubes
 
     coarse = 4 * step
-    shape = np.ceil((_HIGH - _LOW) / coarse).astype(int) + 1
-    axes = [low + coarse * np.arange(n) for low, n in zip(_LOW, shape, strict=True)]
+    corner, far = np.array(box)
+    shape = np.ceil((far - corner) / coarse).astype(int) + 1
+    axes = [low + coarse * np.arange(n) for low, n in zip(corner, shape, strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    rough = body_distance(grid.reshape(-1, 3)).reshape(shape)
+    rough = distance(grid.reshape(-1, 3)).reshape(shape)
     fine_shape = (shape - 1) * 4 + 1
     volume = zoom(rough, fine_shape / shape, order=1, grid_mode=False, mode="nearest")
     near = np.argwhere(np.abs(volume) < 1.5 * coarse)
-    volume[tuple(near.T)] = body_distance(_LOW + step * near)
+    volume[tuple(near.T)] = distance(corner + step * near)
     vertices, triangles, _, _ = marching_cubes(
         volume, 0.0, spacing=(step, step, step), gradient_direction="ascent"
     )
-    vertices = vertices.astype(np.float64) + _LOW
+    vertices = vertices.astype(np.float64) + corner
     triangles = triangles.astype(np.int64)
     if signed_volume(vertices, triangles) < 0:
         triangles = triangles[:, ::-1].copy()
@@ -60,6 +64,9 @@ def signed_volume(vertices: Vertices, triangles: Triangles) -> float:
 def thin_out(vertices: Vertices, triangles: Triangles, count: int) -> tuple[Vertices, Triangles]:
     """Bring a fine closed surface down to a few thousand triangles, quickly."""
     import fast_simplification
+
+    if len(triangles) <= count:
+        return vertices, triangles
 
     points, faces = fast_simplification.simplify(
         vertices, triangles.astype(np.int32), target_count=count, agg=4

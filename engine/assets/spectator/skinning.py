@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .body import arm_coordinates, arm_distance, leg_distance, torso_distance
-from .meshing import Triangles, Vertices, half_surface, mirrored
+from .body import Body, arm_coordinates
+from .meshing import BODY_BOX, Triangles, Vertices, half_surface, mirrored
 from .skeleton import LOWER_ARM, PALM_LENGTH, UPPER_ARM
 
 MESH_STEP = 0.009
@@ -39,17 +39,17 @@ _WIDTH = {
 }
 
 
-def _labels(points: NDArray[np.float32]) -> list[str]:
+def _labels(body: Body, points: NDArray[np.float32]) -> list[str]:
     """Joint (without its side) that each (N, 3) point of the left half belongs to."""
     x, y, z = points.T
     along, _, _ = arm_coordinates(points)
     elbow, wrist = UPPER_ARM, UPPER_ARM + LOWER_ARM
-    arm = (arm_distance(points) < torso_distance(points) + 0.004) & (along > 0.012) & (y > 0.7)
+    arm = (body.arm(points) < body.torso(points) + 0.004) & (along > 0.012) & (y > 0.7)
     arm &= (x > 0.15) & (along < 0.9) & ~((y < 1.0) & (x < 0.3))
     # The seat stays with the pelvis when the thigh is lifted, the groin folds.
     back = np.clip((0.03 - z) / 0.09, 0.0, 1.0)
     crease = 0.815 + x * 0.55 - back * (0.015 + x * 0.35)
-    leg = (y < crease) & ~arm & (leg_distance(points) < 0.2)
+    leg = (y < crease) & ~arm & (body.leg(points) < 0.2)
     ahead_of_ear = np.clip((z + 0.04) / 0.10, 0.0, 1.0)
     in_head = y > 1.560 - 0.050 * ahead_of_ear
     in_neck = (y > 1.440) & (np.hypot(x, z + 0.022) < 0.082)
@@ -79,17 +79,19 @@ class SurfaceWeights:
 
     Parameters
     ----------
+    body
+        Whose surface.
     names
         The skeleton's joints, for the columns of the weights.
     """
 
-    def __init__(self, names: Sequence[str]) -> None:
+    def __init__(self, body: Body, names: Sequence[str]) -> None:
         from scipy.spatial import cKDTree
 
-        vertices, triangles = mirrored(*half_surface(MESH_STEP))
+        vertices, triangles = mirrored(*half_surface(body.distance, MESH_STEP, BODY_BOX))
         left = vertices.copy()
         left[:, 0] = np.abs(left[:, 0])
-        labels = _labels(left.astype(np.float32))
+        labels = _labels(body, left.astype(np.float32))
         column = {name: index for index, name in enumerate(names)}
         hard = np.zeros((len(vertices), len(names)))
         for row, label in enumerate(labels):

@@ -260,3 +260,23 @@ def test_wrong_arguments_are_named(rng: np.random.Generator) -> None:
         ApplauseRates(beta=float("nan"))
     with pytest.raises(ValueError, match="softness is 0"):
         ApplauseRates(softness=0)
+
+
+def test_cueing_much_of_a_crowd_does_what_cueing_ids_does(rng: np.random.Generator) -> None:
+    present = np.arange(600) % 7 != 0
+    who = np.arange(600) % 3 != 0
+    benefit = rng.random(600, np.float32)
+    hearing = Hearing(np.zeros(600, np.int32), present)
+    one, other = (Applause(hearing, np.random.default_rng(5)) for _ in range(2))
+    for applause in (one, other):
+        applause.start(np.arange(0, 600, 5))
+        applause.stop(np.arange(0, 600, 10))
+    one.cue(who, benefit[who])
+    other.cue_crowd(who, benefit)
+    for _ in range(90):
+        for a, b in zip(one.step(1 / 30), other.step(1 / 30), strict=True):
+            np.testing.assert_array_equal(a, b)
+    assert one.share > 0.5
+    other.cue_crowd(who, -1.0, refuse=True)
+    there = np.flatnonzero(who & present)
+    assert (other.benefit(there) == -1.0).all()

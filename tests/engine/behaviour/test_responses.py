@@ -20,9 +20,7 @@ def _share(crowd: Any, side: int, reacting: Any) -> float:
 
 
 @pytest.mark.parametrize("scorer", [0, 1])
-def test_the_own_side_cheers_a_goal_others_are_dismayed_and_neutrals_clap_a_little(
-    crowd: Any, scorer: int
-) -> None:
+def test_the_own_side_cheers_a_goal_and_others_are_dismayed(crowd: Any, scorer: int) -> None:
     reacting = crowd.answer(Goal(scorer))
     assert (np.diff(reacting) > 0).all()
     assert crowd.present[reacting].all()
@@ -35,8 +33,7 @@ def test_the_own_side_cheers_a_goal_others_are_dismayed_and_neutrals_clap_a_litt
     assert not crowd.doing(*LOUD)[other].any()
     assert crowd.doing("dismay", "sit_dismay")[other].mean() > 0.3
     neutral = crowd.supporters(-1)
-    assert 0.05 < crowd.doing("sit_clap", "clap")[neutral].mean() < 0.8
-    assert not crowd.doing("jump")[neutral].any()
+    assert not crowd.doing(*LOUD)[neutral].any()
 
 
 def test_a_third_side_has_goals_of_its_own(crowd: Any) -> None:

@@ -63,7 +63,7 @@ def test_shipped_tables_are_sound(name: str, factories: ModuleType) -> None:
 
 def test_the_reference_table_is_the_machine_of_the_thesis() -> None:
     table = load_table("sport")
-    assert table.machines == ("body", "head")
+    assert table.machines == ("body", "head", "arms")
     assert table.states[0].name == "start"
     assert _ways(table, "start") - {"struck"} == {"sit"}
     assert {"turn_left", "turn_right", "stand"} <= _ways(table, "sit")
@@ -111,7 +111,7 @@ BROKEN = [
     ("limit = 30", "limit = 0", 10, "limit is 0, expected a number, 1 to"),
     ('"no_such"', '"no_such("', 11, "is no expression"),
     ('clips = "no_such", ', "", 11, "variant 2 has no clips"),
-    ("effort = 2.0", "effort = nan", 11, "effort is nan, expected a number, 0.001 or more"),
+    ("effort = 2.0", "effort = nan", 11, "effort is nan, expected a number, 1e-06 or more"),
     ("effort = 2.0", "effort = -1", 11, "effort is -1"),
     ('from = "sit"', "form = 1", 14, "unknown key 'form'; did you mean from"),
     ('to = "clap"', 'to = "clapp"', 13, "there is no state 'clapp'; states: sit, clap"),
@@ -153,6 +153,11 @@ def test_machines_are_apart() -> None:
     other = GOOD + '\n[states.talk]\nmachine = "head"\n\n[[rules]]\nfrom = "talk"\nto = "sit"\n'
     with pytest.raises(AssetError, match="'talk' and 'sit' are of different machines"):
         table_from_toml(other)
+
+
+def test_machines_have_the_names_of_what_they_move() -> None:
+    with pytest.raises(AssetError, match="machine is 'legs', expected one of: body, head, arms"):
+        table_from_toml(GOOD + '\n[states.stroll]\nmachine = "legs"\n')
 
 
 def test_a_star_is_every_other_state_of_the_machine() -> None:

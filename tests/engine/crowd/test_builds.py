@@ -86,7 +86,13 @@ def test_small_people_sit_on_the_seat_and_stand_on_the_ground() -> None:
 
 @pytest.mark.parametrize(
     ("rows", "motions", "whole", "types", "own"),
-    [(256, 13, 6, 2, 148), (64, 13, 6, 2, 0), (256, 13, 0, 0, 256), (100, 13, 0, 2, 62)],
+    [
+        (256, 13, 6, 2, 148),
+        (64, 13, 6, 2, 20),
+        (64, 16, 6, 2, 0),
+        (256, 13, 0, 0, 256),
+        (100, 13, 0, 2, 62),
+    ],
 )
 def test_as_many_streams_as_leave_room_for_twins(
     rows: int, motions: int, whole: int, types: int, own: int

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from tifo.components import Appearance
-from tifo.engine.crowd.colours import TEAM_COLOURS, draw_appearance
+from tifo.engine.crowd.body_types import ADULT, CHILD, OLD
+from tifo.engine.crowd.colours import LIMITS, TEAM_COLOURS, draw_appearance
+from tifo.engine.crowd.hsb import to_hsb
+from tifo.engine.crowd.kits import KITS, Kit
 
 NAMES = ("skin", "hair", "shirt", "trousers", "shoes")
 
 
-def _draw(side: NDArray[np.int8], seed: int = 1, **options: float) -> Appearance:
+def _draw(side: NDArray[np.int8], seed: int = 1, **options: Any) -> Appearance:
     return draw_appearance(side, np.random.default_rng(seed), **options)
 
 
@@ -66,3 +71,57 @@ def test_equal_seeds_dress_alike_and_others_differ() -> None:
 
 def test_nobody_needs_no_clothes() -> None:
     assert _draw(np.zeros(0, np.int8)).shirt.shape == (0, 4)
+
+
+@pytest.mark.parametrize("part", ["skin", "trousers", "shoes"])
+def test_colours_keep_to_the_limits_of_their_part(part: str) -> None:
+    colours = getattr(_draw(np.full(3000, -1, np.int8)), part)[:, :3] / 255.0
+    # A level of 255 is up to 0.02 of the hue or saturation of a dark colour.
+    assert LIMITS[part].hold(to_hsb(colours), slack=0.025).all()
+
+
+def test_skin_has_a_narrow_hue_and_little_saturation() -> None:
+    hsb = to_hsb(_draw(np.zeros(3000, np.int8)).skin[:, :3] / 255.0)
+    assert 0.02 < hsb[:, 0].min() < hsb[:, 0].max() < 0.11
+    assert hsb[:, 1].max() < 0.65
+
+
+def test_shirts_of_nobodys_team_are_muted() -> None:
+    hsb = to_hsb(_draw(np.full(3000, -1, np.int8)).shirt[:, :3] / 255.0)
+    assert hsb[:, 1].max() < 0.65
+
+
+@pytest.mark.parametrize(("kind", "share"), [(ADULT, 0.06), (CHILD, 0.0), (OLD, 0.85)])
+def test_hair_goes_with_the_age(kind: int, share: float) -> None:
+    ages = np.full(4000, kind, np.uint8)
+    hsb = to_hsb(_draw(np.zeros(4000, np.int8), kind=ages).hair[:, :3] / 255.0)
+    grey = LIMITS["grey hair"].hold(hsb, slack=0.04)
+    assert grey.mean() == pytest.approx(share, abs=0.025)
+    coloured = LIMITS["hair"].hold(hsb, slack=0.06)
+    assert (grey | coloured).all()
+
+
+def test_patterns_are_those_of_the_side() -> None:
+    side = np.repeat(np.array([-1, 0, 1, 3], np.int8), 1000)
+    look = _draw(side)
+    for number in (-1, 0, 1, 3):
+        some = look.pattern[side == number]
+        if number < 0:
+            assert not some.any()
+            continue
+        assert set(np.unique(some)) == {0, KITS[number].number}
+        assert (some > 0).mean() == pytest.approx(0.62 * 0.7, abs=0.05)
+        second = look.second[side == number][some > 0]
+        assert (_likeness(second, KITS[number].second) > 0.999).all()
+    plain = look.pattern == 0
+    muted = plain & (side < 0)
+    np.testing.assert_array_equal(look.second[muted], look.shirt[muted])
+
+
+def test_own_kits() -> None:
+    kit = Kit((10, 200, 10), (0, 0, 0), "sash")
+    look = _draw(np.zeros(500, np.int8), fervour=1.0, kits=(kit,))
+    assert (_likeness(look.shirt, (10, 200, 10)) > 0.999).all()
+    assert set(np.unique(look.pattern)) == {0, 4}
+    with pytest.raises(ValueError, match="kits has 1 shirts, expected 2"):
+        _draw(np.ones(3, np.int8), kits=(kit,))

@@ -37,13 +37,16 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "away_share": st.floats(0.0, 0.5),
     "children": st.floats(0.0, 0.5),
     "old": st.floats(0.0, 0.5),
+    "women": st.floats(0.0, 1.0),
     "props": st.floats(0.0, 1.0),
+    "tint": st.floats(0.0, 1.0),
+    "casting": st.booleans(),
     "streams": st.integers(1, 256),
-    "spare_streams": st.just(0),
+    "spare_streams": st.integers(0, 256),
     "history": st.integers(2, 254),
     "slots": st.integers(0, 8192),
     "uniques": st.integers(0, 2048),
-    "poses": st.sampled_from(["streams", "baked"]),
+    "poses": st.sampled_from(["streams", "baked", "none"]),
     "offsets": st.sampled_from(["normal", "uniform"]),
     "rest_idle": st.booleans(),
     "seed": st.integers(0, 2**63 - 1),
@@ -51,9 +54,13 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "character": TEXT,
     "motions": st.lists(TEXT),
     "fans": st.sampled_from(["away block", "mixed", "blocks"]),
+    "parties": st.sampled_from(["football", "general"]),
     "ultras": SHARE,
     "behaviour": TEXT,
     "embarrassment": SHARE,
+    "latecomers": SHARE,
+    "stewards": st.integers(0, 1000),
+    "walking": st.booleans(),
 }
 
 
@@ -87,7 +94,7 @@ def test_round_trip(tmp_path: Path, values: dict[str, Any]) -> None:
     ("name", "value", "allowed"),
     [
         ("layout", "arena", "'bowl' or 'stand'"),
-        ("poses", "frozen", "'streams' or 'baked'"),
+        ("poses", "frozen", "'streams' or 'baked' or 'none'"),
         ("offsets", 3, "'normal' or 'uniform'"),
         ("seats", 0, "from 1 to 1000000"),
         ("seats", -5, "from 1 to 1000000"),
@@ -215,9 +222,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
         CrowdSpec.from_toml(tmp_path / "latin.toml")
 
 
-def test_spare_streams_leave_streams_to_the_crowd() -> None:
-    assert CrowdSpec(streams=20, spare_streams=19).spare_streams == 19
-    with pytest.raises(ValueError, match="spare_streams must be less than streams, not 20 of 20"):
-        CrowdSpec(streams=20, spare_streams=20)
-    with pytest.raises(ValueError, match="spare_streams must be a whole number from 0 to 255"):
+def test_spare_streams_come_on_top_of_the_crowds_own() -> None:
+    assert CrowdSpec(streams=20, spare_streams=256).spare_streams == 256
+    with pytest.raises(ValueError, match="spare_streams must be a whole number from 0 to 256"):
         CrowdSpec(spare_streams=-1)

@@ -166,3 +166,77 @@ def test_the_timer_does_nothing_where_gl_can_not_measure(monkeypatch: pytest.Mon
     assert not timer.available
     assert timer.wait() is None
     timer.delete()
+
+
+class FakeContext:
+    """Stands for a context that shares objects with others."""
+
+    def __init__(self, space: Any) -> None:
+        self.object_space, self.canvas = space, self
+
+
+def test_deleting_on_another_thread_waits_for_the_own_one() -> None:
+    before = count("buffer")
+    buffer = Buffer(16)
+    name = buffer.name
+    thread = threading.Thread(target=buffer.delete)
+    thread.start()
+    thread.join()
+    assert buffer.deleted
+    assert pgl.glIsBuffer(name), "there is no GL on that thread"
+    collect()
+    assert not pgl.glIsBuffer(name)
+    assert count("buffer") == before
+
+
+def test_what_is_shared_is_deleted_from_any_context_of_the_group(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    real = pgl.current_context
+    sibling: Any = FakeContext(real.object_space)
+    buffer, target = Buffer(16), Framebuffer((1, 1))
+    names = buffer.name, target.name
+    with monkeypatch.context() as patched:
+        patched.setattr(objects, "current_context", lambda: sibling)
+        target.delete()
+        buffer.delete()
+        assert not pgl.glIsBuffer(names[0])
+        assert pgl.glIsFramebuffer(names[1]), "framebuffers belong to one context"
+    collect()
+    assert not pgl.glIsFramebuffer(names[1])
+
+
+def test_a_destroyed_context_takes_its_own_and_leaves_what_is_shared(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    real = pgl.current_context
+    gone: Any = FakeContext(real.object_space)
+    before = live_objects()
+    with monkeypatch.context() as patched:
+        patched.setattr(objects, "require_context", lambda: gone)
+        buffer, query = Buffer(16), GpuTimer(history=1)
+        name = buffer.name
+    gone.canvas = None  # as pyglet leaves it, whoever still holds it
+    buffer.delete()
+    query.delete()
+    assert not pgl.glIsBuffer(name)
+    assert live_objects() == before
+
+
+def test_a_group_whose_contexts_are_all_destroyed_is_forgotten(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Space:
+        """Stands for a share group."""
+
+    gone: Any = FakeContext(Space())
+    before = count("buffer")
+    with monkeypatch.context() as patched:
+        patched.setattr(objects, "require_context", lambda: gone)
+        buffer = Buffer(16)
+        name = buffer.name
+    gone.canvas = None
+    buffer.delete()
+    assert count("buffer") == before
+    assert pgl.glIsBuffer(name)
+    pgl.glDeleteBuffers(1, pgl.GLuint(name))

@@ -88,8 +88,8 @@ def test_changes_arrive_with_the_version(crowd: Any, factories: ModuleType) -> N
     crowd.placement.version += 1
     crowd.appearance.version += 1
     copied = crowd.update(0)
-    # Whole rows of 256 agents: 48 bytes of place and 20 of colours each, and one stream.
-    assert copied == 258 * 256 * (48 + 20) + 16
+    # Whole rows of 256 agents: 48 bytes of place and 24 of colours each, and one stream.
+    assert copied == 258 * 256 * (48 + 24) + 16
     (points,) = crowd.skinned(probe(factories), [last], 0, 0.0)
     np.testing.assert_allclose(points[0], [1, 2, 3], rtol=0, atol=1e-6)
     (tints,) = crowd.skinned(probe(factories), [last], 0, 0.0, output="f_tint", surface=2)
@@ -103,3 +103,19 @@ def test_normals_turn_with_the_body(crowd: Any, factories: ModuleType) -> None:
     yaw = crowd.placement.yaw[list(CHOSEN)].astype(float)
     forward = np.stack([np.sin(yaw), 0 * yaw, np.cos(yaw)], axis=1)
     np.testing.assert_allclose(shown[:, 0], forward, rtol=0, atol=2e-6)
+
+
+def test_only_rows_with_people_who_moved_are_copied(crowd: Any, factories: ModuleType) -> None:
+    rng = np.random.default_rng(3)
+    placement = crowd.placement
+    moved = np.array([3, 255, 70 * 256 + 9, AGENTS - 1])
+    placement.position[:, moved] = rng.uniform(-50, 50, (3, len(moved)))
+    placement.yaw[moved] += 1.0
+    placement.touch(moved)
+    # Rows 0 and 70 of 256 agents and the 44 of the last row, 48 bytes each, and one stream.
+    assert crowd.update(0) == (256 + 256 + 44) * 48 + 16
+    assert crowd.update(0) == 16
+    chosen = [*moved.tolist(), 4, 300]
+    shown = crowd.skinned(probe(factories), chosen, 0, 0.0)
+    for agent, points in zip(chosen, shown, strict=True):
+        np.testing.assert_allclose(points, expected_points(placement, agent), rtol=0, atol=2e-5)

@@ -323,3 +323,17 @@ def test_the_viewport_may_lie_anywhere() -> None:
     target.delete()
     renderer.delete()
     np.testing.assert_array_equal(picture, alone)
+
+
+def test_shirts_with_patterns_have_their_mean_colour() -> None:
+    """Linear halves of 255 and 0 are 188 in sRGB; a sash is not seen."""
+    figures = Figures([STANDING] * 5)
+    shirt, second = figures.appearance.shirt, figures.appearance.second
+    shirt[:, :3], second[:, :3] = (255, 0, 0), (0, 0, 255)
+    shirt[3:, :3] = ((188, 0, 188), (255, 0, 0))
+    figures.appearance.pattern[:] = (1, 2, 4, 0, 0)
+    light = captured(figures, ("f_shirt",), 4, 1.0, *camera(FRONT, (320, 180), 2.4))["f_shirt"]
+    # Haze grows a little with the distance.
+    np.testing.assert_allclose(light[[0, 1]], light[[3, 3]], atol=0.006)
+    np.testing.assert_allclose(light[2], light[4], atol=0.006)
+    assert not np.allclose(light[3], light[4], atol=0.05)

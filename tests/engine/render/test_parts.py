@@ -392,9 +392,9 @@ def test_own_colours_of_a_part_leave_the_bodies_alone(factories: ModuleType, gl:
     parent.update(0)
     same = CrowdInputs(CrowdColumns(placement, looks, Detail(), columns), parent)
     own = CrowdInputs(CrowdColumns(placement, other, Detail(), columns), parent)
-    # Only who plays what is copied; then places and looks as well: 256 rows of 3 and 5 texels.
+    # Only who plays what is copied; then places and looks as well: 256 rows of 3 and 6 texels.
     assert same.update(0) == 256 * 48
-    assert own.update(0) == 256 * (48 + 48 + 20)
+    assert own.update(0) == 256 * (48 + 48 + 24)
     for inputs in (own, same, parent):
         inputs.delete()
     assert character.meshes

@@ -205,17 +205,18 @@ def test_wrong_values_are_named_and_change_nothing(slide_pool: SlidePool) -> Non
 def test_committed_slices_and_stream_changes_are_marked(slide_pool: SlidePool) -> None:
     pool = slide_pool(history=6)
     stream = pool.add(0)
-    pool.store.take_dirty()
+    mirror = pool.store.mirror()
+    mirror.take()
     pool.evaluate(9)
-    dirty = pool.store.take_dirty()
+    dirty = mirror.take()
     assert (dirty.slices, dirty.streams) == (set(), False)
     pool.commit(9)
-    dirty = pool.store.take_dirty()
+    dirty = mirror.take()
     assert (dirty.slices, dirty.streams) == ({1}, True)
     pool.stop(stream)
-    assert pool.store.take_dirty().streams
+    assert mirror.take().streams
     _tick(pool, 10)
-    dirty = pool.store.take_dirty()
+    dirty = mirror.take()
     assert (dirty.slices, dirty.streams) == (set(), False)
 
 

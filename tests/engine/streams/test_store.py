@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import numpy as np
 import pytest
 
@@ -50,26 +52,46 @@ def test_ticks_go_round_the_ring(tick: int, place: int) -> None:
 
 def test_everything_is_dirty_at_first_and_nothing_after_taking() -> None:
     store = PoseStore(1, 1, 6, uniques=1)
-    first = store.take_dirty()
+    mirror = store.mirror()
+    first = mirror.take()
     assert first.slices == set(range(8))
     assert first.static_rows == {0, 1, 2}
     assert first.streams
-    second = store.take_dirty()
+    second = mirror.take()
     assert (second.slices, second.static_rows, second.streams) == (set(), set(), False)
 
 
 def test_changes_gather_until_they_are_taken() -> None:
     store = PoseStore(1, 1, 6, uniques=1)
-    store.take_dirty()
+    mirror = store.mirror()
+    mirror.take()
     store.mark_slice(9)
     store.mark_slice(10)
     store.mark_slice(17)
     store.write_static(2, np.zeros((1, 3, 4), np.float32))
-    dirty = store.take_dirty()
+    dirty = mirror.take()
     assert (dirty.slices, dirty.static_rows, dirty.streams) == ({1, 2}, {2}, False)
     store.mark_streams()
-    dirty = store.take_dirty()
+    dirty = mirror.take()
     assert (dirty.slices, dirty.static_rows, dirty.streams) == (set(), set(), True)
+
+
+def test_each_mirror_takes_its_own_changes() -> None:
+    store = PoseStore(1, 1, 6, uniques=1)
+    first, second = store.mirror(), store.mirror()
+    assert first.take().slices == set(range(8))
+    store.mark_slice(3)
+    assert first.take().slices == {3}
+    store.mark_slice(4)
+    assert first.take().slices == {4}
+    assert second.take().slices == set(range(8))
+    store.mark_slice(5)
+    late = store.mirror()
+    assert late.take().slices == set(range(8))
+    assert (first.take().slices, second.take().slices) == ({5}, {5})
+    del second, late
+    gc.collect()
+    assert len(store._mirrors) == 1, "who is gone is not kept up to date"
 
 
 def test_a_static_row_takes_a_palette_and_markers() -> None:

@@ -190,14 +190,15 @@ def test_only_rows_that_changed_are_marked(factories: ModuleType) -> None:
     uniques.add()
     live = uniques.add()
     store = uniques.pool.store
-    store.take_dirty()
+    mirror = store.mirror()
+    mirror.take()
     for tick, row in ((1, 4), (2, 3), (3, 4)):
         uniques.write(live, _local(1.0))
         _tick(uniques, tick)
-        dirty = store.take_dirty()
+        dirty = mirror.take()
         assert (dirty.static_rows, dirty.streams) == ({row}, True)
     _tick(uniques, 4)
-    dirty = store.take_dirty()
+    dirty = mirror.take()
     assert (dirty.static_rows, dirty.streams) == (set(), False)
 
 

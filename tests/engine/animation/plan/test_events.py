@@ -306,3 +306,16 @@ def images(node: Any, tag: float, starts: bool, before: float, step: float) -> i
     # Too near to say, after so much rounding.
     assume(step == 0 or not 0 < abs(ends[1] - round(ends[1])) < 1e-9)
     return floor(ends[1]) - floor(ends[0]) if step > 0 else ceil(ends[0]) - ceil(ends[1])
+
+
+def test_a_loop_put_before_its_start_lends_its_phase_not_its_time(factories: ModuleType) -> None:
+    skeleton = factories.make_body()
+    clip = make_moves(skeleton)[0]
+    assert clip.looping
+    tagged = replace(clip, events=(ClipEvent(0.0, "start"), ClipEvent(0.26 * clip.duration, "on")))
+    pool = StreamPool(skeleton, ClipBank(skeleton, [tagged]), capacity=1, history=4)
+    states = {"a": ClipNode(clip.name), "b": ClipNode(clip.name)}
+    ways = [Transition("a", "b", when="not x", sync=True)]
+    machine = StateMachine(states, ways, parameters={"x": 0.0})
+    run = Run(pool, machine, time=-1.75 * clip.duration, speed=0.02 * 30 * clip.duration)
+    assert run.ticks(2) == [{}, {"on": [1.0]}], "b began at a quarter"
