@@ -9,11 +9,12 @@ import numpy as np
 
 from ..components import Behaviour, Emotion, MotionState, Placement, Seat, Team
 from ..engine.behaviour.answers import Answers
-from ..engine.behaviour.company import Company
+from ..engine.behaviour.company import GREETING, Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.display import motions_to_show
 from ..engine.behaviour.emotion import relax
 from ..engine.behaviour.events import EventQueue
+from ..engine.behaviour.facing import Facing
 from ..engine.behaviour.guidance import Guidance
 from ..engine.behaviour.hugs import Hugs
 from ..engine.behaviour.machine import step, union
@@ -63,7 +64,9 @@ class BehaviourSystem(esper.Processor):
         placement, present = component(Placement), component(Seat).occupied
         events = component(EventQueue).take(tick / POSE_RATE)
         for event in events:
-            company.see(event, table, team, placement)
+            greeted = company.see(event, table, team, placement)
+            if len(greeted) and event.place is not None:
+                component(Facing).turn_to(greeted, event.place, tick, GREETING)
             if hugs is not None:
                 hugs.see(event, tick)
         for event, began, part in component(Answers).ask(events, tick):
@@ -74,8 +77,8 @@ class BehaviourSystem(esper.Processor):
         relax(emotion, tick, behaviour.reacting, contagious=True)
         company.step(tick, emotion, behaviour)
         if hugs is not None:
-            hugs.turn(table, tick)
-            hugs.step(table, behaviour, motion.busy_until, tick)
+            hugs.step(table, behaviour, motion.busy_until, company.away, tick)
+        component(Facing).step(tick)
         changed = step(
             table,
             behaviour,

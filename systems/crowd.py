@@ -30,6 +30,7 @@ from ..engine.assets.character import Character
 from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.events import Event, EventQueue
+from ..engine.behaviour.facing import Facing
 from ..engine.behaviour.guidance import Guidance
 from ..engine.behaviour.walkers import Walkers
 from ..engine.crowd.agents import agent_ids
@@ -102,6 +103,8 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCal
         What hangs on the agents, by name.
     observers
         Recorders that see every pose tick; `watch` and `watch_clips` add some.
+    facing
+        Who is turned to something; `face` turns people.
     """
 
     entity: int
@@ -137,6 +140,11 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCal
     world: str = "default"
     mirrors: list[CrowdMirrors] = field(default_factory=list)
     observers: Observers = field(default_factory=Observers)
+    facing: Facing = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Nobody is turned yet."""
+        self.facing = Facing(self.placement)
 
     def __len__(self) -> int:
         """Number of agents, absent ones included."""

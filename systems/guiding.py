@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..components.behaviour import Behaviour
 from ..components.emotion import Emotion
 from ..components.team import MOST_SIDES, NEUTRAL, Team
+from ..engine.behaviour.company import Company
 from ..engine.behaviour.compiled import CompiledTable
 from ..engine.behaviour.display import channel_values
 from ..engine.behaviour.emotion import set_embarrassment
+from ..engine.behaviour.facing import Facing
 from ..engine.behaviour.guidance import Guidance, Order, Priority, make_order
 from ..engine.behaviour.machine import wake
 from ..engine.behaviour.table import POSTURES
@@ -39,7 +41,9 @@ class Guiding:
         emotion: Emotion
         behaviour: Behaviour
         table: CompiledTable
+        company: Company
         guidance: Guidance
+        facing: Facing
 
     def select(self, agents: Chosen | None = None, *, team: int | None = None) -> NDArray[np.int64]:
         """Ids of agents, for the calls that take agents.
@@ -131,6 +135,50 @@ class Guiding:
     ) -> Order:
         """What a group does unless an event moves its people; otherwise as `guide`."""
         return self._order(Priority.SCRIPTED, agents, team, motion, channel, seconds, forbid)
+
+    def face(
+        self,
+        agents: Chosen | None = None,
+        place: tuple[float, float, float] | None = None,
+        *,
+        team: int | None = None,
+        seconds: float | None = None,
+    ) -> NDArray[np.int64]:
+        """Let agents turn to a place, as far as they can, and do there whatever they do.
+
+        Together with an order it makes them clap, wave or point towards somebody (*Thesis* 6.2).
+
+        Parameters
+        ----------
+        agents, team
+            As for `select`.
+        place
+            (x, y, z) metres in the stadium's frame; None lets them turn back.
+        seconds
+            After which they face ahead again; None until they are told otherwise.
+
+        Returns
+        -------
+        (K,) int64 their ids; without those who are away or on their way
+
+        Raises
+        ------
+        ValueError
+            For agents that don't exist, or a place or time that isn't finite, or no time at all.
+        """
+        ids = self.select(agents, team=team)
+        ids = ids[~self.company.away[ids]]
+        tick = self.behaviour.tick + 1
+        if place is None:
+            self.facing.turn_back(ids, tick)
+            return ids
+        point = np.asarray(place, np.float64)
+        if point.shape != (3,) or not np.isfinite(point).all():
+            raise ValueError(f"place is {place!r}, expected three finite coordinates in metres")
+        if seconds is not None and not 0.0 < seconds < 1e6:
+            raise ValueError(f"seconds is {seconds!r}, expected a number above 0, or None")
+        self.facing.turn_to(ids, (point[0], point[1], point[2]), tick, seconds)
+        return ids
 
     def release(self, order: Order) -> None:
         """End an order before its time; nothing happens if it is over."""

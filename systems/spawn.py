@@ -178,6 +178,7 @@ def spawn_crowd(
         Answers(count),
         party,
         crowd.observers,
+        crowd.facing,
         figure,
         find_regions(character, figure, tint=spec.tint),
         character,
@@ -272,7 +273,7 @@ def _add_streams(
         Gestures(crowd.table, count),
     ]
     assert crowd.company is not None
-    hugs = Hugs(crowd.plan, crowd.company.party, crowd.body, crowd.placement, rng)
+    hugs = Hugs(crowd.plan, crowd.company.party, crowd.body, crowd.placement, crowd.facing, rng)
     crowd.behaviour.signals.update(hugs.signals)
     parts.append(hugs)
     for component in parts:

@@ -140,12 +140,25 @@ class Company:
         ids = agent_ids(agents, len(self._present))
         return self.wave.start(ids) if len(ids) else ids
 
+    @property
+    def away(self) -> NDArray[np.bool_]:
+        """(N,) who is away, or on the way."""
+        return self._away
+
     def excuse(self, agents: NDArray[np.int64], away: bool) -> None:
         """Let agents take no part in applause while they are away or on their way, or again."""
         self._away[agents] = away
 
-    def see(self, event: Event, compiled: CompiledTable, team: Team, placement: Placement) -> None:
-        """Let an event ask for applause, end a wave, or say how far away it was."""
+    def see(
+        self, event: Event, compiled: CompiledTable, team: Team, placement: Placement
+    ) -> NDArray[np.int64]:
+        """Let an event ask for applause, end a wave, or say how far away it was.
+
+        Returns
+        -------
+        (K,) int64 ids of those who have a player close to them now, where it happens
+        """
+        greeted = np.zeros(0, np.int64)
         if (
             self._wave is not None
             and event.kind not in PLACED
@@ -160,7 +173,9 @@ class Company:
             if event.kind in ("goal", "player_close"):
                 friends = (team.side == event.side) | (event.kind == "player_close")
                 self._arms = compiled.machine_number("arms")
-                self._greet(np.flatnonzero((distance <= GREETING_RADIUS) & friends & self._present))
+                near = (distance <= GREETING_RADIUS) & friends & self._present & ~self._away
+                greeted = np.flatnonzero(near)
+                self._greet(greeted)
             if event.kind == "mexican_wave":
                 here = np.flatnonzero(self._present)
                 nearest = np.argsort(distance[here], kind="stable")[:WAVE_STARTERS]
@@ -187,6 +202,7 @@ class Company:
                 self.applause.cue_crowd(who, team.fervour * np.float32(benefit))
             else:
                 self.applause.cue_crowd(who, benefit, refuse=benefit < 0)
+        return greeted
 
     def step(self, tick: int, emotion: Emotion, behaviour: Behaviour) -> None:
         """Advance all mechanisms by a pose tick, and wake those whose signals change."""

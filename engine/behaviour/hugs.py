@@ -19,6 +19,7 @@ from ..crowd.seating import SeatPlan
 from ..streams.pool import POSE_RATE
 from .compiled import CompiledTable
 from .events import KINDS, Event
+from .facing import Facing
 from .machine import wake
 from .parties import turn_towards
 from .table import PIECE, Relation
@@ -35,8 +36,6 @@ REACH = 0.75
 """Metres between partners, at most."""
 ALIKE = 0.14
 """By how much partners' sizes may differ, as a share."""
-TURN = 0.5
-"""Seconds in which they turn to each other, and back."""
 STATES = ("hug_a", "hug_b")
 """States of a table in which the two of a pair are."""
 
@@ -46,8 +45,8 @@ class Hugs:
 
     Parameters
     ----------
-    plan, party, body, placement
-        Seats, who came with whom, their bodies, and where they stand.
+    plan, party, body, placement, facing
+        Seats, who came with whom, their bodies, where they stand, and what turns them.
     rng
         Where moments come from.
 
@@ -63,9 +62,10 @@ class Hugs:
         party: Party,
         body: Body,
         placement: Placement,
+        facing: Facing,
         rng: np.random.Generator,
     ) -> None:
-        self._rng, self._placement = rng, placement
+        self._rng, self._facing = rng, facing
         first = np.flatnonzero(party.partner > np.arange(plan.count))
         second = party.partner[first].astype(np.int64)
         apart = np.linalg.norm(plan.position[:, first] - plan.position[:, second], axis=0)
@@ -80,36 +80,36 @@ class Hugs:
         self.signals: dict[str, NDArray[np.bool_]] = {
             name: np.zeros(plan.count, np.bool_) for name in ("hug_first", "hug_second")
         }
-        self._from, self._until = 0, -1
+        self._opens, self._closes = 0, -1
         self._told = self._pairs[:, :0]
-        self._hugging = np.zeros(self._pairs.shape[1], np.bool_)
-        self._began = np.zeros(self._pairs.shape[1], np.int32)
-        self._base = np.zeros(self._pairs.shape, np.float32)
+        self._until = np.zeros(self._pairs.shape[1], np.int32)
 
     def see(self, event: Event, tick: int) -> None:
         """Let an event open the time in which pairs hug."""
         if event.kind in HUGGED and (event.weight or 0.0) >= LEAST_WEIGHT:
-            self._from = tick + round(WINDOW[0] * POSE_RATE)
-            self._until = tick + round(WINDOW[1] * POSE_RATE)
+            self._opens = tick + round(WINDOW[0] * POSE_RATE)
+            self._closes = tick + round(WINDOW[1] * POSE_RATE)
 
     def step(
         self,
         compiled: CompiledTable,
         behaviour: Behaviour,
         busy_until: NDArray[np.int32],
+        away: NDArray[np.bool_],
         tick: int,
     ) -> None:
-        """Choose the pairs that begin in this pose tick, and wake them."""
+        """Choose the pairs that begin in this pose tick, and wake them; none who is `away`."""
         for signal, told in zip(self.signals.values(), self._told, strict=True):
             signal[told] = False
         self._told = self._pairs[:, :0]
-        if not self._from <= tick < self._until or not set(STATES) <= set(compiled.names):
+        if not self._opens <= tick < self._closes or not set(STATES) <= set(compiled.names):
             return
-        ready = ~self._hugging & (self._rng.random(len(self._hugging)) < HAZARD / POSE_RATE)
+        ready = (self._until <= tick) & (self._rng.random(len(self._until)) < HAZARD / POSE_RATE)
+        ready &= ~self._facing.turning[self._pairs].any(axis=0)
         pair = np.flatnonzero(ready)
         both = self._pairs[:, pair]
         kinds = [KINDS.index(kind) for kind in HUGGED]
-        able = behaviour.reacting[both] & (behaviour.relation[both] == Relation.OWN)
+        able = behaviour.reacting[both] & ~away[both] & (behaviour.relation[both] == Relation.OWN)
         able &= np.isin(behaviour.event[both], kinds) & (busy_until[both] <= tick)
         for k, name in enumerate(STATES):
             ways = [
@@ -121,22 +121,7 @@ class Hugs:
         for signal, told in zip(self.signals.values(), self._told, strict=True):
             signal[told] = True
             wake(behaviour, 0, told, tick, rapid=True)
-        self._hugging[pair] = True
-        self._began[pair] = tick
-        self._base[:, pair] = self._placement.yaw[self._told]
-
-    def turn(self, compiled: CompiledTable, tick: int) -> None:
-        """Turn those who hug to each other, and back when they let go."""
-        pair = np.flatnonzero(self._hugging)
-        if not len(pair):
-            return
-        stay = compiled.pieces[compiled.number(STATES[0]), 0] * PIECE / POSE_RATE
-        seconds = (tick - self._began[pair]) / POSE_RATE
-        share = np.clip(np.minimum(seconds, stay - seconds) / TURN, 0.0, 1.0)
-        share = (share * share * (3.0 - 2.0 * share)).astype(np.float32)
-        yaw = self._base[:, pair] + share * self._turn[:, pair]
-        over = seconds >= stay
-        yaw[:, over] = self._base[:, pair[over]]
-        self._placement.yaw[self._pairs[:, pair]] = yaw
-        self._placement.touch(self._pairs[:, pair].ravel())
-        self._hugging[pair[over]] = False
+        stay = int(compiled.pieces[compiled.number(STATES[0]), 0]) * PIECE
+        self._until[pair] = tick + stay
+        for told, turn in zip(self._told, self._turn[:, pair], strict=True):
+            self._facing.turn(told, turn, tick, stay / POSE_RATE)
