@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+
 from numpy.typing import ArrayLike
 
 from ...engine.streams.pool import Stream, StreamPool
@@ -64,8 +66,9 @@ class StreamNode(Node):
         stream = self.stream
         self.crowd.data.transition_to_streamed(agents, stream, duration=duration, offset=offset)
 
+    @abstractmethod
     def _make(self, pool: StreamPool) -> Stream:
-        raise NotImplementedError
+        """A new stream of the pool that plays what the node shall play."""
 
     def _running(self) -> tuple[StreamPool, Stream] | None:
         """Pool and stream, if it has one in the crowd that there is now."""
