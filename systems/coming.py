@@ -17,6 +17,8 @@ from ..engine.streams.pool import POSE_RATE
 from .guiding import Chosen
 
 MOST_SECONDS = 86_400.0
+BEHIND, AFTER = 4, 0.4
+"""Who goes along does so up to so many times so many seconds later."""
 
 
 class Coming:
@@ -39,7 +41,7 @@ class Coming:
     def arrive(
         self, agents: Chosen, *, team: int | None = None, seconds: float = 0.0
     ) -> NDArray[np.int64]:
-        """Let people come through the doors and walk to their seats.
+        """Let people come through the doors and walk to their seats; who follows them comes along.
 
         Parameters
         ----------
@@ -50,8 +52,8 @@ class Coming:
 
         Returns
         -------
-        (K,) int64 ids of those who come: their seats are empty, and nobody is on the way to or from
-        them.
+        (K,) int64 ids of those who come, ascending: their seats are empty, and nobody is on the way
+        to or from them.
 
         Raises
         ------
@@ -63,13 +65,13 @@ class Coming:
     def leave(
         self, agents: Chosen, *, team: int | None = None, seconds: float = 0.0
     ) -> NDArray[np.int64]:
-        """Let people get up, walk to a door and be gone.
+        """Let people get up, walk to a door and be gone; who follows them goes along.
 
         Parameters and errors are as for `arrive`.
 
         Returns
         -------
-        (K,) int64 ids of those who leave: they sit or stand at their seats
+        (K,) int64 ids of those who leave, ascending: they sit or stand at their seats
         """
         return self._send(agents, team, Errand.LEAVE, seconds)
 
@@ -79,16 +81,24 @@ class Coming:
         walkers = self._walkers()
         if not 0.0 <= seconds <= MOST_SECONDS:
             raise ValueError(f"seconds is {seconds!r}, expected 0 to {MOST_SECONDS:,.0f}")
-        ids: NDArray[np.int64] = self.select(agents, team=team)
-        leaves = errand is Errand.LEAVE
-        there = self.seat.occupied[ids]
-        fit = there & ~walkers.away[ids] if leaves else ~there
-        ids = ids[fit & ~walkers.is_expected(ids)]
-        after = walkers.draw_times(len(ids), seconds)
-        ticks = self.behaviour.tick + 1 + np.rint(after * POSE_RATE).astype(np.int64)
+        led = self.company.following
+        ids = self._fit(self.select(agents, team=team), errand)
+        along = np.setdiff1d(self._fit(led.of(ids), errand), ids)
+        after = np.zeros(len(self.seat.occupied))
+        after[ids] = walkers.draw_times(len(ids), seconds)
+        # One behind the other, so that a party doesn't get up as one.
+        after[along] = after[led.leader_of(along)] + np.arange(len(along)) % BEHIND * AFTER
+        ids = np.union1d(ids, along)
+        ticks = self.behaviour.tick + 1 + np.rint(after[ids] * POSE_RATE).astype(np.int64)
         self.company.excuse(ids, away=True)
         walkers.send(ids, errand, ticks)
         return ids
+
+    def _fit(self, ids: NDArray[np.int64], errand: Errand) -> NDArray[np.int64]:
+        """Those of some agents who can be sent on an errand."""
+        walkers, there = self._walkers(), self.seat.occupied[ids]
+        fit = there & ~walkers.away[ids] if errand is Errand.LEAVE else ~there
+        return ids[fit & ~walkers.is_expected(ids)]
 
     def _walkers(self) -> Walkers:
         if self.walkers is None:

@@ -10,6 +10,7 @@ ask for:
 `neighbour_left`   the member of its party to talk to sits to the left
 `neighbour_right`  ... to the right
 `spoken_to`        that member talks
+`leader_stands`    the agent follows somebody who is on his feet
 `seated`           the agent's posture
 `distance`         metres to where the last event happened; infinite where it had no place
 `player_near`      a player is close: the scorer, or one who comes to the stand
@@ -33,6 +34,7 @@ from .applause import Applause
 from .compiled import CompiledTable
 from .contagion import EmotionContagion
 from .events import KINDS, PLACED, Event
+from .following import Following
 from .hearing import Hearing
 from .machine import wake
 from .parties import turn_towards
@@ -82,7 +84,7 @@ class Company:
 
     Attributes
     ----------
-    applause, rhythm, contagion
+    applause, rhythm, contagion, following
         The models; see their modules.
     party
         Who came with whom.
@@ -106,7 +108,7 @@ class Company:
         self.applause = Applause(hearing, rng, self.rhythm.rate)
         self.contagion = EmotionContagion(plan, present, team.side)
         self.contagion.excitement_rest = emotion.rest_excitement
-        self.party = party
+        self.party, self.following = party, Following(party, team)
         self._threshold = self.applause.threshold.copy()
         self._away = np.zeros(count, np.bool_)
         self._wave: MexicanWave | None = None
@@ -118,6 +120,7 @@ class Company:
             "neighbour_left": left,
             "neighbour_right": right,
             "spoken_to": np.zeros(count, np.bool_),
+            "leader_stands": self.following.stands,
             "seated": np.zeros(count, np.bool_),
             "distance": np.full(count, np.inf, np.float32),
             "player_near": np.zeros(count, np.bool_),
@@ -215,6 +218,7 @@ class Company:
                 wanted[ids] = value
                 wake(behaviour, 0, ids, tick)
         self._watch_player(tick, behaviour)
+        self.following.step(tick, behaviour, self._away)
         waving = self.signals["wave_wanted"]
         waving[self._waving] = False
         if self._wave is not None:

@@ -16,7 +16,8 @@ from .looks import KEEP, Look, Looks
 from .table import PIECE, POSTURES, RELATIONS, BehaviourTable, Response, Rule, State, Variant
 
 WAKING = frozenset(
-    {"clapping_wanted", "wave_wanted", "spoken_to", "player_near", "hug_first", "hug_second"}
+    {"clapping_wanted", "wave_wanted", "spoken_to", "leader_stands", "player_near"}
+    | {"hug_first", "hug_second"}
 )
 """Signals whose changes wake agents (`company`, `hugs`), so that nobody has to look for them."""
 _REST = "rest"

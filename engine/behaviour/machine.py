@@ -39,19 +39,31 @@ def begin(
 
 
 def settle(
-    compiled: CompiledTable, behaviour: Behaviour, columns: Columns, rng: np.random.Generator
+    compiled: CompiledTable,
+    behaviour: Behaviour,
+    columns: Columns,
+    rng: np.random.Generator,
+    agents: NDArray[np.int64] | None = None,
 ) -> None:
-    """Let a calm minute and a half pass for everyone: a crowd is found in the middle of things.
+    """Let a calm minute and a half pass: a crowd is found in the middle of things.
 
     Afterwards stays end after pose tick 0, and each began before.
+
+    Parameters
+    ----------
+    compiled, behaviour, columns, rng
+        As for `step`.
+    agents
+        (K,) ids of those for whom it passes; for everyone if None.
     """
-    agents = np.arange(behaviour.state.shape[1])
-    for machine in range(len(behaviour.until)):
-        behaviour.until[machine] = _beat(machine, agents) - _SETTLING
-    behaviour.entered[:] = behaviour.until - PIECE
+    who = np.arange(behaviour.state.shape[1]) if agents is None else agents
     for machine, start in enumerate(compiled.starts):
-        behaviour.state[machine] = start
-        late = np.arange(behaviour.state.shape[1])
+        until = _beat(machine, who) - _SETTLING
+        behaviour.until[machine, who] = until
+        behaviour.entered[machine, who] = until - PIECE
+        behaviour.state[machine, who] = start
+        behaviour.ahead[machine, who] = -1
+        late = who
         while len(late):
             when = behaviour.until[machine, late].copy()
             _move_on(compiled, behaviour, machine, late, when, columns, rng)
