@@ -25,11 +25,11 @@ pictures: ## draw the pictures of docs/ that are made by code
 
 test: lint ## format, lint, types, and all tests but the slow ones
 	@.ci/setup test
-	@$(with_display) .venv/bin/python -m pytest -q -rs -m "not slow"
+	@$(with_display) .venv/bin/python -m pytest -q -rs $(in_parallel) -m "not slow"
 
 test-all: lint ## the same with the slow tests
 	@.ci/setup test
-	@$(with_display) .venv/bin/python -m pytest -q -rs -m "slow or not slow"
+	@$(with_display) .venv/bin/python -m pytest -q -rs $(in_parallel) -m "slow or not slow"
 
 lint: ## format, lint and types only
 	@.ci/setup lint
@@ -42,6 +42,9 @@ clean: ## remove .venv and everything else that was made here
 	@rm -rf .venv .cache build dist out *.egg-info tests/golden/diffs
 	@rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name .git -prune -o -type d -name __pycache__ -prune -exec rm -rf {} +
+
+# A process for each processor; the tests of a file share one, and what they are slow to set up.
+in_parallel = --numprocesses auto --maxprocesses 8 --dist loadfile
 
 # Tests that open a window get a display of their own where there is none.
 with_display = $$(test -n "$$DISPLAY" || \

@@ -1,7 +1,7 @@
 """A scene that tifo runs: a stand, a ball that is kicked into it, a camera, a script.
 
 Run with ``python examples/run_scene.py``: Space kicks, drag looks around, Escape quits. With
-``--headless`` it draws two seconds offscreen and writes run_scene.png.
+``--headless`` it runs for two seconds and writes a picture, run_scene.png.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`tifo.run`: a scene in a window of its own, or offscreen, from opening to closing."""
+"""`tifo.run`: a scene in a window of its own, or without one, from opening to closing."""
 
 from __future__ import annotations
 
@@ -110,8 +110,8 @@ def run(
     size, caption, fullscreen, vsync
         Of the window; `size` in pixels of the picture when headless.
     headless
-        Draw offscreen, without a display, frame by frame at 60 a second of the game's time, as
-        fast as it goes.
+        Run without a display, in frames of 1/60 s of the game's time, as fast as it goes. Only a
+        `screenshot` is drawn, and needs OpenGL.
     seconds
         End after so many seconds of the game's time.
     screenshot
@@ -133,7 +133,7 @@ def run(
     AssetError
         If the scene file can't be used.
     GraphicsError
-        Without OpenGL, or without a display unless `headless`.
+        Without OpenGL where something is to be drawn, or without a display unless `headless`.
     ValueError
         If `scene` is no scene, or `seconds` is negative.
     """
@@ -143,7 +143,7 @@ def run(
     reload = HotReload(tree) if hot_reload else None
     try:
         if headless:
-            _run_offscreen(tree, size, samples, seconds, screenshot, reload)
+            _run_headless(tree, size, samples, seconds, screenshot, reload)
         else:
             window = open_window(size, caption, vsync=vsync, fullscreen=fullscreen, samples=0)
             _Game(tree, window, samples, seconds, screenshot, reload).run(vsync)
@@ -152,7 +152,7 @@ def run(
     return tree.exit_code
 
 
-def _run_offscreen(
+def _run_headless(
     tree: SceneTree,
     size: tuple[int, int],
     samples: int,
@@ -160,19 +160,20 @@ def _run_offscreen(
     screenshot: str | Path | None,
     reload: HotReload | None,
 ) -> None:
-    create_offscreen_context()
-    picture = Picture(tree, size, samples)
+    if screenshot is not None:
+        create_offscreen_context()
     last = None if seconds is None else tree.tick + round(seconds * BASE_RATE)
+    while last is None or tree.tick < last:
+        if reload is not None:
+            reload.poll()
+        if not tree.advance(1.0 / BASE_RATE):
+            break
+    if screenshot is None:
+        return
+    picture = Picture(tree, size, samples)
     try:
-        stage = None
-        while last is None or tree.tick < last:
-            if reload is not None:
-                reload.poll()
-            goes_on = tree.advance(1.0 / BASE_RATE)
-            stage = picture.draw()
-            if not goes_on:
-                break
-        if screenshot is not None and stage is not None:
+        stage = picture.draw()
+        if stage is not None:
             _write(screenshot, stage.pixels())
     finally:
         picture.close()

@@ -27,7 +27,7 @@ pyglet.options["debug_gl"] = True
 
 _SAMPLES = Path(__file__).resolve().parents[2] / "shared" / "data"
 _TRUE = ("1", "true", "yes")
-_no_gl: list[str] = []
+_NOT_DRAWN = "nothing can be drawn here: "
 
 
 @pytest.fixture(scope="session")
@@ -40,8 +40,7 @@ def gl_context() -> Any:
     except GraphicsError as error:
         if os.environ.get("CI", "").lower() in _TRUE:
             pytest.fail(f"CI must run the tests that draw: {error}", pytrace=False)
-        _no_gl.append(str(error))
-        pytest.skip(str(error))
+        pytest.skip(f"{_NOT_DRAWN}{error}")
 
 
 @pytest.fixture
@@ -115,6 +114,8 @@ def display() -> Iterator[str]:
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Say in plain sight when nothing was drawn."""
-    if _no_gl:
+    reasons = [str(report.longrepr) for report in terminalreporter.stats.get("skipped", [])]
+    causes = [text.partition(_NOT_DRAWN)[2] for text in reasons if _NOT_DRAWN in text]
+    if causes:
         terminalreporter.section("tests that draw were SKIPPED")
-        terminalreporter.write_line(_no_gl[0])
+        terminalreporter.write_line(causes[0].rstrip("')"))
