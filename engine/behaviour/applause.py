@@ -233,6 +233,15 @@ class Applause:
         ids = ids[self.state[ids] == CLAPPING]
         self._stop_clapping(ids)
 
+    def admit(self, agents: NDArray[np.int64], present: bool) -> None:
+        """Let agents (K,) ids be there from now on, or no longer; who goes stops clapping."""
+        if present:
+            self._wake_up(agents[self.state[agents] == RESTING])
+        else:
+            self.stop(agents)
+            self.state[agents], self._wake[agents] = RESTING, np.inf
+        self.hearing.admit(agents, present)
+
     def heard(self) -> NDArray[np.float64]:
         """(G,) share of the clapping that each group hears, x of the equations."""
         return self.hearing.share(self._clapping_of)

@@ -65,8 +65,6 @@ GREETING_RADIUS = 14.0
 """Metres up to which people wave to a player or reach out to him."""
 GREETING = 9.0
 """Seconds that he stays there."""
-AWAY = np.float32(1e3)
-"""Threshold of clapping of people who aren't there."""
 _STEP = 1.0 / POSE_RATE
 
 
@@ -151,6 +149,11 @@ class Company:
     def excuse(self, agents: NDArray[np.int64], away: bool) -> None:
         """Let agents take no part in applause while they are away or on their way, or again."""
         self._away[agents] = away
+        self.applause.admit(agents, not away)
+        if away:
+            self.signals["clapping_wanted"][agents] = False
+        else:
+            self._present[agents] = True
 
     def see(
         self, event: Event, compiled: CompiledTable, team: Team, placement: Placement
@@ -176,11 +179,11 @@ class Company:
             if event.kind in ("goal", "player_close"):
                 friends = (team.side == event.side) | (event.kind == "player_close")
                 self._arms = compiled.machine_number("arms")
-                near = (distance <= GREETING_RADIUS) & friends & self._present & ~self._away
+                near = (distance <= GREETING_RADIUS) & friends & self.applause.hearing.present
                 greeted = np.flatnonzero(near)
                 self._greet(greeted)
             if event.kind == "mexican_wave":
-                here = np.flatnonzero(self._present)
+                here = np.flatnonzero(self.applause.hearing.present)
                 nearest = np.argsort(distance[here], kind="stable")[:WAVE_STARTERS]
                 self.start_wave(here[nearest])
         kind, weight = KINDS.index(event.kind), event.weight or 0.0
@@ -295,7 +298,6 @@ class Company:
         self.applause.ground[who] = self.contagion.clap_benefit(unusual)
         shy = np.float32(SHY[0]) + np.float32(SHY[1]) * emotion.embarrassment[who]
         self.applause.threshold[who] = self._threshold[who] * shy
-        self.applause.threshold[who][self._away[who]] = AWAY
         if self._wave is not None:
             bored = self._wave.threshold[who]
             bored += (self._eager[who] - bored) * np.float32(PIECE / POSE_RATE / FRESH_AGAIN)

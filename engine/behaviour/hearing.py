@@ -116,6 +116,13 @@ class Hearing:
         """Number of groups, G."""
         return len(self.sizes)
 
+    def admit(self, agents: NDArray[np.int64], present: bool) -> None:
+        """Let agents (K,) ids be there from now on, or no longer."""
+        news = np.unique(agents[self.present[agents] != present])
+        self.present[news] = present
+        self.sizes += self.counts(news) * (1.0 if present else -1.0)
+        self._all = np.maximum(self._mix(self.sizes), 1e-12)
+
     def share(self, sounding: NDArray[np.float64]) -> NDArray[np.float64]:
         """(G,) the share of all loudness possible that each group hears.
 

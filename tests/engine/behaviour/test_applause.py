@@ -280,3 +280,30 @@ def test_cueing_much_of_a_crowd_does_what_cueing_ids_does(rng: np.random.Generat
     other.cue_crowd(who, -1.0, refuse=True)
     there = np.flatnonzero(who & present)
     assert (other.benefit(there) == -1.0).all()
+
+
+def test_who_goes_stops_and_neither_claps_nor_counts_until_he_is_back(
+    rng: np.random.Generator,
+) -> None:
+    applause = Applause(Hearing(np.zeros(40, int)), rng)
+    gone = np.arange(20)
+    applause.cue(np.arange(40), 3.0)
+    applause.start(np.arange(10))
+    applause.admit(gone, present=False)
+    assert len(applause.active) == 0
+    applause.start(gone)
+    applause.cue(gone, 3.0)
+    heard, who = 0.0, set[int]()
+    for _ in range(round(20 / TICK)):
+        applause.step(TICK)
+        heard = max(heard, float(applause.heard()[0]))
+        who |= {*applause.active.tolist()}
+    assert who <= {*range(20, 40)}
+    assert len(who) > 15
+    assert heard > 0.8, "of those who are left"
+    applause.admit(gone, present=True)
+    applause.cue(np.arange(40), 3.0)
+    for _ in range(round(6 / TICK)):
+        applause.step(TICK)
+        who |= {*applause.active.tolist()}
+    assert len(who) > 35

@@ -61,3 +61,14 @@ def test_wrong_arguments_are_named(arguments: tuple, message: str) -> None:
         Hearing(*arguments)
     with pytest.raises(ValueError, match="reach"):
         Hearing.of_sections(build_stand(1, 2), reach=0.0)
+
+
+def test_who_goes_is_not_missed_and_who_comes_counts() -> None:
+    hearing = Hearing(np.array([0, 0, 0, 0, 1, 1]), np.array([1, 1, 1, 0, 1, 1], bool))
+    np.testing.assert_allclose(hearing.share(np.array([1.0, 1.0])), [1 / 3, 1 / 2])
+    hearing.admit(np.array([1, 1, 4, 3]), present=False)  # one twice, one who isn't there
+    np.testing.assert_array_equal(hearing.sizes, [2, 1])
+    np.testing.assert_allclose(hearing.share(np.array([1.0, 1.0])), [1 / 2, 1])
+    hearing.admit(np.array([0, 1, 3]), present=True)
+    np.testing.assert_array_equal(hearing.sizes, [4, 1])
+    assert hearing.present.tolist() == [True, True, True, True, False, True]
