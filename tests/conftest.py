@@ -114,8 +114,9 @@ def display() -> Iterator[str]:
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Say in plain sight when nothing was drawn."""
-    reasons = [str(report.longrepr) for report in terminalreporter.stats.get("skipped", [])]
+    skipped = terminalreporter.stats.get("skipped", [])
+    reasons = [r.longrepr[2] for r in skipped if isinstance(r.longrepr, tuple)]
     causes = [text.partition(_NOT_DRAWN)[2] for text in reasons if _NOT_DRAWN in text]
     if causes:
         terminalreporter.section("tests that draw were SKIPPED")
-        terminalreporter.write_line(causes[0].rstrip("')"))
+        terminalreporter.write_line(causes[0])
