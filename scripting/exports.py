@@ -242,6 +242,10 @@ class Exported:
                 del exports[name]  # a subclass put something else in its place
         cls._exports, cls._fields = exports, frozenset(fields)
 
+    @classmethod
+    def _check_names(cls, name: str, value: Any) -> None:
+        """Raise ValueError or AssetError if a value from a file names another that isn't there."""
+
 
 def exports_of(cls: type) -> dict[str, Export]:
     """Exports of a class by name: those of its bases first, in the order of declaration."""

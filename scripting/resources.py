@@ -10,6 +10,7 @@ import copy
 import importlib.util
 import sys
 from collections.abc import Callable
+from difflib import get_close_matches
 from pathlib import Path, PurePosixPath
 from typing import Any, Self
 
@@ -126,6 +127,14 @@ def loaded_files() -> dict[Path, Any]:
     return _store.loaded
 
 
+def missing(file: Path, more: str = "") -> str:
+    """That a file isn't there, and `more`, with the names beside it that are much the same."""
+    names = [entry.name for entry in file.parent.iterdir()] if file.parent.is_dir() else []
+    near = get_close_matches(file.name, names)
+    hint = f"; did you mean {' or '.join(near)}?" if near else ""
+    return f"there is no such file{more}{hint}"
+
+
 def load(path: str | Path, *, fresh: bool = False) -> Any:
     """What a file holds, read once and then shared; `fresh` reads it again.
 
@@ -145,11 +154,7 @@ def load(path: str | Path, *, fresh: bool = False) -> Any:
         chain = [title for _, title in _store.loading[around.index(file) :]]
         raise CycleError(name, "", f"contains itself: {' > '.join((*chain, name))}")
     if not file.is_file():
-        near = ""
-        if file.parent.is_dir():
-            found = unknown(file.name, [entry.name for entry in file.parent.iterdir()])
-            near = f"; did you mean {found.partition('did you mean ')[2]}" if "did" in found else ""
-        raise AssetError(name, "", f"there is no such file{near}")
+        raise AssetError(name, "", missing(file))
     loader = _store.loaders.get(file.suffix.lower())
     if loader is None:
         known = ", ".join(sorted(_store.loaders))
@@ -221,6 +226,7 @@ def read_exports(
         try:
             made = from_file(spec.type, value, load)
             values[name] = spec.check(made)
+            cls._check_names(name, values[name])
         except WrongValueError:
             cause = f"{cls.__name__}.{name} is {value!r}, expected {spec.allowed}"
             raise toml.error((*keys, name), cause) from None

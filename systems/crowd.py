@@ -37,6 +37,7 @@ from ..engine.crowd.agents import agent_ids
 from ..engine.crowd.looks import choose
 from ..engine.crowd.motions import MotionLibrary
 from ..engine.crowd.physique import Physique
+from ..engine.crowd.regions import Regions
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.overrides import JointOverride, OverrideSet
@@ -81,6 +82,8 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCal
         Feelings, states, the behaviour table as it is used, and orders.
     company
         Parties, applause, waves, and moods that pass from neighbour to neighbour.
+    regions
+        Parts of the character, and where the patterns of its shirt lie.
     pool, anim, transition, ladder
         Streams, blends and requests for them; None in a baked crowd.
     overlays
@@ -126,6 +129,7 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCal
     behaviour: Behaviour
     table: CompiledTable
     guidance: Guidance
+    regions: Regions
     pool: StreamPool | None = None
     anim: AgentAnimID | None = None
     transition: Transition | None = None

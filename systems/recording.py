@@ -12,7 +12,8 @@ from ..engine.clock import BASE_RATE, TICKS_PER_POSE, Clock
 from ..engine.crowd.agents import agent_ids
 from ..engine.crowd.occupancy import select
 from ..engine.crowd.physique import seat_lift
-from ..engine.export.recording import SURFACES, Recording, recorded_bytes
+from ..engine.crowd.regions import SURFACES
+from ..engine.export.recording import Recording, recorded_bytes
 from .crowd import Crowd
 
 Agents = int | str | Sequence[int | str] | ArrayLike | None
@@ -158,6 +159,9 @@ class Recorder:
             colors=np.stack(looks, axis=1).astype(np.uint8),
             morphs=crowd.physique.morphs if crowd.physique is not None else None,
             choice=crowd.body.choice[:, ids],
+            second=crowd.appearance.second[ids, :3],
+            pattern=crowd.appearance.pattern[ids],
+            regions=crowd.regions,
         )
 
 

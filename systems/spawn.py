@@ -154,6 +154,7 @@ def spawn_crowd(
         behaviour=behaviour,
         table=table,
         guidance=guidance,
+        regions=find_regions(character, figure, tint=spec.tint),
         detail=Detail(),
         library=library,
         events=EventQueue(),
@@ -182,7 +183,7 @@ def spawn_crowd(
         crowd.observers,
         crowd.facing,
         figure,
-        find_regions(character, figure, tint=spec.tint),
+        crowd.regions,
         character,
     )
     bank = ClipBank(character.skeleton, cast.clips if steps is None else steps.clips)

@@ -18,7 +18,7 @@ from ..animation.clip import Clip
 from ..assets.rotations import multiply
 from ..assets.spectator import MOTIONS
 from ..streams.pool import StreamPool
-from .motions import MotionLibrary, MotionStreams
+from .motions import MotionLibrary, MotionStreams, start_staggered
 
 SPEEDS = (0.3, 0.42, 0.54, 0.66, 0.8, 1.0, 1.3)
 """Metres a second of the walks."""
@@ -179,16 +179,8 @@ def start_gaits(
     pool: StreamPool, gaits: Sequence[Gait], first_clip: int, streams: MotionStreams
 ) -> MotionStreams:
     """Start a stream for each gait, on rows that are free; places of all motions with them."""
-    rows = [
-        pool.add(first_clip + k, speed=gait.rate, looping=True).row for k, gait in enumerate(gaits)
-    ]
-    ones = np.ones(len(rows), np.int32)
-    shared = streams.shared
-    return replace(
-        streams,
-        first=np.append(streams.first, np.array(rows, np.int32)),
-        count=np.append(streams.count, ones),
-        shared=None if shared is None else np.append(shared, ones),
+    return streams.followed_by(
+        [start_staggered(pool, first_clip + k, 1, gait.rate) for k, gait in enumerate(gaits)]
     )
 
 

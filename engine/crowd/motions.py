@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -202,6 +202,16 @@ class MotionStreams:
         pick = (rng.random(len(motion)) * count).astype(np.int32)
         return self.twins.resolve(self.first[motion] + pick, kind)
 
+    def followed_by(self, rows: Sequence[NDArray[np.int32]]) -> MotionStreams:
+        """These and further motions, each played by consecutive rows that all body types show."""
+        count = np.array([len(own) for own in rows], np.int32)
+        return replace(
+            self,
+            first=np.append(self.first, np.array([own[0] for own in rows], np.int32)),
+            count=np.append(self.count, count),
+            shared=None if self.shared is None else np.append(self.shared, count),
+        )
+
 
 def start_streams(
     pool: StreamPool, library: MotionLibrary, streams: int, rng: np.random.Generator
@@ -242,6 +252,13 @@ def start_streams(
         time = rng.uniform(0.0, float(pool.bank.duration[clip]))
         rows.append(pool.add(clip, time=time, speed=rng.uniform(0.92, 1.08)).row)
     return MotionStreams(first + np.int32(rows[0]), wanted, pool.twins)
+
+
+def start_staggered(pool: StreamPool, clip: int, number: int, speed: float) -> NDArray[np.int32]:
+    """Start streams that play a clip as a loop, at evenly spread phases; their rows (number,)."""
+    times = float(pool.bank.duration[clip]) * np.arange(number) / number
+    rows = [pool.add(clip, time=float(t), speed=speed, looping=True).row for t in times]
+    return np.array(rows, np.int32)
 
 
 def _thinned(

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..streams.phase import entry_offset
 from ..streams.pool import POSE_RATE, StreamPool
-from .motions import MotionLibrary, MotionStreams
+from .motions import MotionLibrary, MotionStreams, start_staggered
 
 SPEED = 1.3
 """Reactions are quicker than the clips, which were made to be looked at."""
@@ -103,22 +103,10 @@ def start_once(
     streams, history
         The streams of the motions before them, and M.
     """
-    first, count, rows = [], [], {}
+    rows = {}
     for motion in motions:
         clip = int(library.clips[motion])
-        duration = float(pool.bank.duration[clip])
-        number = streams_for(duration, history)
-        made = [
-            pool.add(clip, time=duration * k / number, speed=SPEED, looping=True).row
-            for k in range(number)
-        ]
-        first.append(made[0])
-        count.append(number)
-        rows[motion] = np.array(made, np.int32)
-    places = MotionStreams(
-        first=np.append(streams.first, np.array(first, np.int32)),
-        count=np.append(streams.count, np.array(count, np.int32)),
-        twins=pool.twins,
-    )
+        number = streams_for(float(pool.bank.duration[clip]), history)
+        rows[motion] = start_staggered(pool, clip, number, SPEED)
     exact = frozenset(k for k in motions if library.names[k] in MATCHED)
-    return OnceStreams(rows, exact), places
+    return OnceStreams(rows, exact), streams.followed_by([*rows.values()])

@@ -63,6 +63,14 @@ class Regions:
         """From the waist to the neck."""
         return self.neck - self.waist
 
+    def on_trunk(self, positions: NDArray[np.float32]) -> NDArray[np.float64]:
+        """(V, 2) where positions (V, 3) of the bind pose are in the frame of patterns.
+
+        In heights of the trunk: from its middle to the wearer's left, and from the waist.
+        """
+        across = positions[:, [0, 2]].astype(np.float64) @ self.across - self.middle
+        return np.stack([across, positions[:, 1] - self.waist], axis=1) / self.trunk
+
     def part_of(self, heights: NDArray[np.float32]) -> NDArray[np.uint8]:
         """(V,) `TROUSERS`, `UPPER_BODY` or `HEAD` of heights (V,) in the bind pose."""
         return ((heights >= self.waist).astype(np.uint8)) + (heights >= self.neck)

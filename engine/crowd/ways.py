@@ -19,7 +19,7 @@ from ..animation.clip import Clip
 from ..animation.one_shot import with_pauses
 from ..streams.phase import entry_offset
 from ..streams.pool import POSE_RATE, StreamPool
-from .motions import MotionLibrary, MotionStreams
+from .motions import MotionLibrary, MotionStreams, start_staggered
 
 _UP = re.compile(r"^(sit\w*)?stand_?up$", re.IGNORECASE)
 _DOWN = re.compile(r"^sit\w*down$", re.IGNORECASE)
@@ -207,25 +207,16 @@ def start_ways(
     plans, streams, history
         The ways, the streams of the other motions, and M.
     """
-    first, count = [], []
-    for plan, clip in zip(plans, library.clips[-2:], strict=True):
-        number = plan.streams(history)
-        times = plan.loop.duration * np.arange(number) / number
-        made = [pool.add(int(clip), time=float(time), speed=plan.speed).row for time in times]
-        first.append(made[0])
-        count.append(number)
+    up_rows, down_rows = (
+        start_staggered(pool, int(clip), plan.streams(history), plan.speed)
+        for plan, clip in zip(plans, library.clips[-2:], strict=True)
+    )
     seated = seated_motions(library.names)
     up, down = len(library.names) - 2, len(library.names) - 1
     begins, ends = seated.copy(), seated.copy()
     begins[[up, down]], ends[[up, down]] = (True, False), (False, True)
-    rows = tuple(np.arange(f, f + c, dtype=np.int32) for f, c in zip(first, count, strict=True))
-    ways = Ways(up, down, plans, (rows[0], rows[1]), begins, ends)
-    places = MotionStreams(
-        first=np.append(streams.first, np.array(first, np.int32)),
-        count=np.append(streams.count, np.array(count, np.int32)),
-        twins=pool.twins,
-    )
-    return ways, places
+    ways = Ways(up, down, plans, (up_rows, down_rows), begins, ends)
+    return ways, streams.followed_by(ways.rows)
 
 
 def _way(clip: Clip, speed: float) -> Way:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +18,12 @@ from .gltf_body import (
     worn_vertices,
 )
 from .gltf_file import KINDS, GltfFile, exact
-from .local_motion import SHORT, LocalMotion, local_motion
+from .local_motion import SHORT, local_motion
 from .morph_targets import morph_targets
 from .paints import mix_paints
 from .recording import Recording
 from .rig import Rig, factors, levers, make_rig, reach
+from .shirts import lay_sheet
 from .targets import Exported, Progress, check_size, check_target
 
 STILL = 1.5e-5
@@ -85,8 +86,9 @@ def write_gltf(
     file = GltfFile(recording.character.name)
     targets = morph_targets(recording, meshes)
     paints, chosen = mix_paints(recording, meshes)
-    file.add_materials(paints, recording.character.materials)
-    primitives = dict(enumerate(add_skinned(file, meshes, targets)))
+    sheet = lay_sheet(recording, meshes)
+    file.add_materials(paints, recording.character.materials, sheet)
+    primitives = dict(enumerate(add_skinned(file, meshes, targets, sheet)))
     inverse = np.tile(np.eye(4, dtype=np.float32), (skeleton.joint_count, 1, 1))
     inverse[:, :3] = skeleton.inverse_bind
     bind = file.add(inverse.transpose(0, 2, 1), target=None)
@@ -101,42 +103,37 @@ def write_gltf(
     for first in range(0, len(recording), step):
         found = factors(skeleton, recording.palettes[:, first : first + step])
         off = found.deviation(far)
-        needs = np.logical_and(off > UNSEEN * recording.height, not rigid)
+        needs: NDArray[np.bool_] = np.logical_and(off > UNSEEN * recording.height, not rigid)
         deviation = max(deviation, float(np.where(needs, 0.0, off).max()))
-        # Agents whose bones need the same are hung on their parents together.
+        whole = make_rig(skeleton, np.logical_or.reduce(needs))
+        still = STILL * recording.height
+        motion = local_motion(skeleton, whole, found, lever, still, short=moving)
+        stretched += int(needs.any(axis=1).sum())
+        # Agents whose bones need the same have the same rig, which is a part of the whole one.
         masks, kind = np.unique(needs, axis=0, return_inverse=True)
-        for number, mask in enumerate(masks):
-            members = np.flatnonzero(kind.ravel() == number)
-            rig = make_rig(skeleton, mask)
-            some = found.of(members)
-            motion = local_motion(
-                skeleton, rig, some, lever, STILL * recording.height, short=moving
-            )
-            stretched += len(members) if mask.any() else 0
-            for place, member in enumerate(members):
-                k = first + int(member)
-                if split:
-                    name = f"agent {recording.agents[k]}"
-                    animation = {"name": name, "samplers": [], "channels": []}
-                body = _add_agent(file, recording, k, animation, clock)
-                joints = _add_joints(file, rig, motion, place, animation, clock)
-                file.nodes[body]["children"] = joints[rig.parents < 0].tolist()
-                file.skins.append(
-                    {"joints": joints[rig.skin].tolist(), "inverseBindMatrices": bind}
-                )
-                file.roots.append(body)
-                if (mesh := _mesh(recording, k, primitives, chosen[k])) is not None:
-                    node = {"name": mesh["name"], "mesh": len(file.meshes)}
-                    node["skin"] = len(file.skins) - 1
-                    if targets.names:
-                        mesh["weights"] = exact(targets.weights[k])
-                        mesh["extras"] = {"targetNames": list(targets.names)}
-                    file.meshes.append(mesh)
-                    file.roots.append(file.add_node(node))
-                if split and animation["channels"]:
-                    file.animations.append(animation)
-                if progress is not None:
-                    progress("agents", len(file.skins), len(recording))
+        rigs = [(rig := make_rig(skeleton, mask), whole.part(rig)) for mask in masks]
+        for place, number in enumerate(kind.ravel().tolist()):
+            k, (rig, part) = first + place, rigs[number]
+            if split:
+                name = f"agent {recording.agents[k]}"
+                animation = {"name": name, "samplers": [], "channels": []}
+            body = _add_agent(file, recording, k, animation, clock)
+            joints = _add_joints(file, rig, motion.of(place, part), animation, clock)
+            file.nodes[body]["children"] = joints[rig.parents < 0].tolist()
+            file.skins.append({"joints": joints[rig.skin].tolist(), "inverseBindMatrices": bind})
+            file.roots.append(body)
+            if (mesh := _mesh(recording, k, primitives, chosen[k])) is not None:
+                node = {"name": mesh["name"], "mesh": len(file.meshes)}
+                node["skin"] = len(file.skins) - 1
+                if targets.names:
+                    mesh["weights"] = exact(targets.weights[k])
+                    mesh["extras"] = {"targetNames": list(targets.names)}
+                file.meshes.append(mesh)
+                file.roots.append(file.add_node(node))
+            if split and animation["channels"]:
+                file.animations.append(animation)
+            if progress is not None:
+                progress("agents", len(file.skins), len(recording))
     if moving and not split:
         if not animation["channels"]:
             # A file needs a channel; one that stays keeps the duration.
@@ -185,8 +182,9 @@ def write_baked_gltf(
     check_size(target, vertices * 24, "export fewer agents, or a coarser level")
     file = GltfFile(recording.character.name)
     paints, chosen = mix_paints(recording, meshes)
-    file.add_materials(paints, recording.character.materials)
-    surfaces = [add_surface(file, mesh) for mesh in meshes]
+    sheet = lay_sheet(recording, meshes)
+    file.add_materials(paints, recording.character.materials, sheet)
+    surfaces = [add_surface(file, mesh, sheet) for mesh in meshes]
     worn = recording.worn(meshes)
     for k in range(len(recording)):
         primitives = {
@@ -241,48 +239,51 @@ def _add_agent(
         ("rotation", turn),
         ("scale", scale),
     ):
-        _transform(file, index, path, values, animation, clock)
+        _transform(file, [index], path, values[:, None], animation, clock)
     return index
 
 
 def _add_joints(
     file: GltfFile,
     rig: Rig,
-    motion: LocalMotion,
-    agent: int,
+    motion: Mapping[str, NDArray[np.float32]],
     animation: dict[str, Any],
     clock: int,
 ) -> NDArray[np.int64]:
-    """Nodes of a skeleton's joints; their indices (R,)."""
+    """Nodes of a skeleton's joints, which move by (T, R, n) of each path; their indices (R,)."""
     joints = np.arange(len(rig)) + len(file.nodes)
     for name in rig.names:
         file.add_node({"name": name})
-    for joint, parent in enumerate(rig.parents):
-        index = int(joints[joint])
+    indices = joints.tolist()
+    for index, parent in zip(indices, rig.parents.tolist(), strict=True):
         if parent >= 0:
-            file.nodes[joints[parent]].setdefault("children", []).append(index)
-        for path in _NEUTRAL:
-            values = getattr(motion, path)[:, agent, joint]
-            _transform(file, index, path, values, animation, clock)
+            file.nodes[indices[parent]].setdefault("children", []).append(index)
+    for path, values in motion.items():
+        _transform(file, indices, path, values, animation, clock)
     return joints
 
 
 def _transform(
     file: GltfFile,
-    node: int,
+    nodes: Sequence[int],
     path: str,
     values: NDArray[np.float32],
     animation: dict[str, Any] | None,
     clock: int,
 ) -> None:
-    """Give a node a transform (T, n): where it begins, and keys if it changes."""
-    first = values[0]
-    if tuple(first) != _NEUTRAL[path]:
+    """Give R nodes a transform (T, R, n): where it begins, and keys if it changes."""
+    first, width = values[0], values.shape[2]
+    set_off = np.flatnonzero((first != np.array(_NEUTRAL[path], np.float32)).any(axis=1))
+    begin = first[set_off]
+    if path == "rotation":
         # Rotations that keys hold as integers are not quite of length 1.
-        length = float(np.linalg.norm(first)) if path == "rotation" else 1.0
-        file.nodes[node][path] = exact(first / np.float32(length))
-    if animation is not None and (values != values[0]).any():
-        _add_channel(file, animation, clock, node, path, values)
+        begin = begin / np.linalg.norm(begin, axis=1, keepdims=True)
+    numbers = exact(begin.ravel())
+    for place, node in enumerate(set_off.tolist()):
+        file.nodes[nodes[node]][path] = numbers[place * width : (place + 1) * width]
+    if animation is not None:
+        for node in np.flatnonzero((values != first).any(axis=(0, 2))).tolist():
+            _add_channel(file, animation, clock, nodes[node], path, values[:, node])
 
 
 def _add_channel(

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from ..assets.character import SkinnedMesh
 from .gltf_file import ELEMENT_BUFFER, GltfFile
 from .morph_targets import MorphTargets
+from .paints import has_coordinates
 from .recording import Recording
+from .shirts import Sheet
 
 
 def body_meshes(recording: Recording, level: int) -> tuple[SkinnedMesh, ...]:
@@ -33,8 +35,10 @@ def worn_vertices(recording: Recording, meshes: Sequence[SkinnedMesh]) -> int:
     return int((recording.worn(meshes) @ np.array([len(mesh.positions) for mesh in meshes])).sum())
 
 
-def add_surface(file: GltfFile, mesh: SkinnedMesh) -> dict[str, Any]:
+def add_surface(file: GltfFile, mesh: SkinnedMesh, sheet: Sheet | None) -> dict[str, Any]:
     """Write what doesn't move of a mesh: triangles, texture coordinates and vertex colours.
+
+    Coordinates on the sheet of patterns come after the mesh's own.
 
     Returns
     -------
@@ -42,8 +46,13 @@ def add_surface(file: GltfFile, mesh: SkinnedMesh) -> dict[str, Any]:
         A primitive without positions and material.
     """
     attributes: dict[str, int] = {}
-    if mesh.uvs.any():
+    if has_coordinates(mesh):
         attributes["TEXCOORD_0"] = file.add(mesh.uvs.astype(np.float32))
+    if sheet is not None and sheet.covers(mesh):
+        # The first row of a picture is its highest, and glTF counts from there.
+        left, up = sheet.coordinates(mesh).T
+        places = np.stack([left, np.float32(1.0) - up], axis=1)
+        attributes[f"TEXCOORD_{len(attributes)}"] = file.add(places)
     if not (mesh.colors == 1).all():
         if mesh.colors.min() >= 0 and mesh.colors.max() <= 1:
             shorts = np.rint(mesh.colors * 65535).astype(np.uint16)
@@ -57,12 +66,15 @@ def add_surface(file: GltfFile, mesh: SkinnedMesh) -> dict[str, Any]:
 
 
 def add_skinned(
-    file: GltfFile, meshes: Sequence[SkinnedMesh], targets: MorphTargets
+    file: GltfFile,
+    meshes: Sequence[SkinnedMesh],
+    targets: MorphTargets,
+    sheet: Sheet | None,
 ) -> list[dict[str, Any]]:
     """Write meshes in the bind pose with weights and targets; primitives without material."""
     primitives = []
     for mesh, offsets in zip(meshes, targets.offsets, strict=True):
-        primitive = add_surface(file, mesh)
+        primitive = add_surface(file, mesh, sheet)
         few = int(mesh.joints.max()) < 256
         primitive["attributes"] |= {
             "POSITION": file.add(mesh.positions.astype(np.float32), bounds=True),

@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..assets.character import Material
-from .paints import Paint, png
+from .paints import Paint
+from .pixels import png, png_of_palette
+from .shirts import Sheet, Shirt
 from .targets import check_size, replacing
 
 KINDS = (".glb", ".gltf")
@@ -25,6 +27,8 @@ _COMPONENT = {"float32": 5126, "uint32": 5125, "uint16": 5123, "int16": 5122, "u
 _SHAPE = {(): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
 _KEYS = -1
 _SMALLEST_ALPHA = 128
+_TO_THE_EDGE = {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}
+"""Linear, with mipmaps; what is beyond the edge is as the edge."""
 
 
 class GltfFile:
@@ -82,9 +86,14 @@ class GltfFile:
         whole = packed.dtype.kind == "i"
         return self._add_accessor(packed, _KEYS, place, bounds=bounds, normalized=whole)
 
-    def add_materials(self, paints: Sequence[Paint], materials: Sequence[Material]) -> None:
-        """Write all paints, in their order, with the pictures that they show."""
-        pictures: dict[int, int] = {}
+    def add_materials(
+        self, paints: Sequence[Paint], materials: Sequence[Material], sheet: Sheet | None
+    ) -> None:
+        """Write all paints, in their order, with the pictures that they show.
+
+        Those of patterned shirts lie on `sheet`.
+        """
+        pictures: dict[int | Shirt, int] = {}
         for paint in paints:
             material = materials[paint.material]
             surface: dict[str, Any] = {
@@ -95,13 +104,17 @@ class GltfFile:
             entry: dict[str, Any] = {"name": paint.name, "pbrMetallicRoughness": surface}
             if material.image is not None:
                 if paint.material not in pictures:
-                    pictures[paint.material] = len(pictures)
-                    view = self._add_view(png(material.image))
-                    self._table("images").append({"bufferView": view, "mimeType": "image/png"})
-                    self._table("textures").append({"source": pictures[paint.material]})
+                    pictures[paint.material] = self._add_picture(png(material.image))
                 surface["baseColorTexture"] = {"index": pictures[paint.material]}
                 if material.image[..., 3].min() < _SMALLEST_ALPHA:
                     entry["alphaMode"] = "MASK"
+            elif paint.shirt is not None and sheet is not None:
+                if paint.shirt not in pictures:
+                    content = png_of_palette(*sheet.picture(paint.shirt))
+                    pictures[paint.shirt] = self._add_picture(content, sampler=_TO_THE_EDGE)
+                surface["baseColorTexture"] = {"index": pictures[paint.shirt]}
+                if paint.coordinates:
+                    surface["baseColorTexture"]["texCoord"] = paint.coordinates
             if material.double_sided:
                 entry["doubleSided"] = True
             self._table("materials").append(entry)
@@ -165,6 +178,19 @@ class GltfFile:
 
     def _table(self, name: str) -> list[dict[str, Any]]:
         return self._tables.setdefault(name, [])
+
+    def _add_picture(self, content: bytes, *, sampler: dict[str, int] | None = None) -> int:
+        """Write a PNG file and how it is read; the index of its texture."""
+        view = self._add_view(content)
+        self._table("images").append({"bufferView": view, "mimeType": "image/png"})
+        texture = {"source": len(self._table("images")) - 1}
+        if sampler is not None:
+            samplers = self._table("samplers")
+            if sampler not in samplers:
+                samplers.append(sampler)
+            texture["sampler"] = samplers.index(sampler)
+        self._table("textures").append(texture)
+        return len(self._table("textures")) - 1
 
     def _add_view(self, content: bytes) -> int:
         self._data += b"\0" * (-len(self._data) % 4)

@@ -33,6 +33,14 @@ class LocalMotion:
     rotation: F32
     scale: F32
 
+    def of(self, agent: int, joints: NDArray[np.int64]) -> dict[str, F32]:
+        """What some joints (R,) of the k-th agent do: (T, R, n) by glTF's names of the channels."""
+        return {
+            "translation": self.translation[:, agent, joints],
+            "rotation": self.rotation[:, agent, joints],
+            "scale": self.scale[:, agent, joints],
+        }
+
 
 def local_motion(
     skeleton: Skeleton,

@@ -1,8 +1,7 @@
-"""Materials of exported agents: each surface in the colour that its agent wears."""
+"""Materials of exported agents: each surface in the colours that its agent wears."""
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assets.character import Material, SkinnedMesh
-from .recording import SURFACES, Recording
+from ..crowd.kits import PATTERNS
+from ..crowd.regions import SURFACES
+from .pixels import to_linear
+from .recording import Recording
+from .shirts import Shirt, parted_colours, shows_patterns
+
+RGB = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,16 +25,23 @@ class Paint:
     Parameters
     ----------
     name
-        Of the character's material, with the colour where agents differ: ``"shirt #c61e2d"``.
+        Of the character's material, with the colours where agents differ: ``"shirt #c61e2d"``,
+        ``"shirt #2454b0 #f0f0f0 hoops"``.
     color
         RGBA factor in linear light.
     material
         Index of the character's material, for its picture and sides.
+    shirt
+        What the picture of a patterned shirt shows.
+    coordinates
+        Which texture coordinates of the mesh that picture lies on.
     """
 
     name: str
     color: tuple[float, float, float, float]
     material: int
+    shirt: Shirt | None = None
+    coordinates: int = 0
 
 
 def mix_paints(
@@ -37,7 +49,7 @@ def mix_paints(
 ) -> tuple[list[Paint], NDArray[np.int64]]:
     """All paints, and (K, meshes) which of them covers each mesh of each agent.
 
-    Agents with the same colour share a paint. It is -1 for meshes that an agent doesn't wear.
+    Agents with the same colours share a paint. It is -1 for meshes that an agent doesn't wear.
     """
     paints: list[Paint] = []
     known: dict[tuple[int, bytes], int] = {}
@@ -46,34 +58,43 @@ def mix_paints(
     for number, mesh in enumerate(meshes):
         material = recording.character.materials[mesh.material]
         own = material.name in SURFACES
+        patterned = recording.patterned & shows_patterns(material)
+        coordinates = int(has_coordinates(mesh))
         for k in np.flatnonzero(worn[:, number]):
             rgb = recording.colors[k, SURFACES.index(material.name)] if own else None
-            key = (mesh.material, b"" if rgb is None else rgb.tobytes())
+            look = b"" if rgb is None else rgb.tobytes()
+            if patterned[k]:
+                look += recording.second[k].tobytes() + bytes([recording.pattern[k], coordinates])
+            key = (mesh.material, look)
             if key not in known:
                 known[key] = len(paints)
-                paints.append(_paint(material, mesh.material, rgb))
+                if rgb is not None and patterned[k]:
+                    second, pattern = recording.second[k], int(recording.pattern[k])
+                    paint = _patterned(mesh.material, rgb, second, pattern, coordinates)
+                else:
+                    paint = _paint(material, mesh.material, rgb)
+                paints.append(paint)
             chosen[k, number] = known[key]
     return paints, chosen
 
 
-def _paint(material: Material, number: int, rgb: NDArray[np.uint8] | None) -> Paint:
+def has_coordinates(mesh: SkinnedMesh) -> bool:
+    """Whether a mesh has texture coordinates of its own."""
+    return bool(mesh.uvs.any())
+
+
+def _paint(material: Material, number: int, rgb: RGB | None) -> Paint:
     if rgb is None:
         return Paint(material.name, material.base_color, number)
-    red, green, blue = to_linear(rgb).tolist()
-    name = f"{material.name} #{bytes(rgb).hex()}"
-    return Paint(name, (round(red, 7), round(green, 7), round(blue, 7), 1.0), number)
+    return Paint(f"{material.name} #{bytes(rgb).hex()}", _factor(to_linear(rgb)), number)
 
 
-def to_linear(srgb: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """Linear light 0 to 1 of 8-bit sRGB (IEC 61966-2-1)."""
-    share = srgb / 255.0
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+def _patterned(number: int, first: RGB, second: RGB, pattern: int, coordinates: int) -> Paint:
+    factor, *left = parted_colours(first, second)
+    name = f"shirt #{bytes(first).hex()} #{bytes(second).hex()} {PATTERNS[pattern]}"
+    return Paint(name, _factor(factor), number, Shirt(pattern, *left), coordinates)
 
 
-def png(image: NDArray[np.uint8]) -> bytes:
-    """A picture (H, W, 4) as a PNG file."""
-    from PIL import Image
-
-    content = io.BytesIO()
-    Image.fromarray(image, "RGBA").save(content, "PNG")
-    return content.getvalue()
+def _factor(light: NDArray[np.float64]) -> tuple[float, float, float, float]:
+    red, green, blue = light.tolist()
+    return (round(red, 7), round(green, 7), round(blue, 7), 1.0)

@@ -14,11 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..assets.character import Character, SkinnedMesh
 from ..assets.variants import MOST_CHOICES, default_choices, variant_groups
+from ..crowd.kits import PATTERNS
 from ..crowd.morphs import MorphWeights, morphed_positions
+from ..crowd.regions import SURFACES, Regions
 
-SURFACES = ("skin", "hair", "shirt", "trousers", "shoes")
-"""Materials of these names take the agent's colour; the order is that of `Recording.colors`."""
-
+_SHIRT = SURFACES.index("shirt")
 _BYTES_OF_JOINT = 48
 
 
@@ -51,6 +51,11 @@ class Recording:
         (K,) float32 of the bind pose's morphs.
     colors
         (K, 5, 3) uint8 sRGB of `SURFACES`.
+    second, pattern
+        (K, 3) uint8 sRGB and (K,) uint8, of shirts, as `Appearance` has them; plain if they aren't
+        given.
+    regions
+        Where the patterns lie; None leaves them out.
     morphs
         How meshes take part in girth and head; None if they don't.
     choice
@@ -76,6 +81,9 @@ class Recording:
     colors: NDArray[np.uint8]
     morphs: MorphWeights | None = None
     choice: NDArray[np.uint8] = None  # type: ignore[assignment]
+    second: NDArray[np.uint8] = None  # type: ignore[assignment]
+    pattern: NDArray[np.uint8] = None  # type: ignore[assignment]
+    regions: Regions | None = None
 
     def __post_init__(self) -> None:
         """Check the shapes, and fill in what nobody chose."""
@@ -89,6 +97,10 @@ class Recording:
         if self.choice is None or not len(self.choice):
             chosen = np.array(list(default_choices(self.character).values()), np.uint8)
             object.__setattr__(self, "choice", np.repeat(chosen[:, None], count, axis=1))
+        if self.second is None:
+            object.__setattr__(self, "second", self.colors[:, _SHIRT].copy())
+        if self.pattern is None:
+            object.__setattr__(self, "pattern", np.zeros(count, np.uint8))
         for name, shape in (
             ("agents", (count,)),
             ("palettes", (frames, count, joints, 3, 4)),
@@ -98,6 +110,8 @@ class Recording:
             ("head", (count,)),
             ("colors", (count, len(SURFACES), 3)),
             ("choice", (len(groups), count)),
+            ("second", (count, 3)),
+            ("pattern", (count,)),
         ):
             found = getattr(self, name).shape
             if found != shape:
@@ -111,6 +125,8 @@ class Recording:
                     f"choice has {wrong[0]} for '{group}', expected 0 to {len(choices) - 1}, "
                     f"or {MOST_CHOICES} for none"
                 )
+        if count and (most := int(self.pattern.max())) >= len(PATTERNS):
+            raise ValueError(f"pattern has {most}, expected 0 to {len(PATTERNS) - 1}")
 
     def __len__(self) -> int:
         """Number of agents K."""
@@ -162,6 +178,12 @@ class Recording:
                 worn[:, column] = self.choice[row] == number
         return worn
 
+    @property
+    def patterned(self) -> NDArray[np.bool_]:
+        """(K,) whose shirt shows two colours."""
+        differs: NDArray[np.bool_] = (self.second != self.colors[:, _SHIRT]).any(axis=1)
+        return differs & (self.pattern > 0) & (self.regions is not None)
+
     def select(self, agents: int | ArrayLike) -> Recording:
         """The same moments of some of the agents, by id; ValueError for ids that aren't in it."""
         ids = np.atleast_1d(np.asarray(agents))
@@ -184,6 +206,8 @@ class Recording:
             head=self.head[k],
             colors=self.colors[k],
             choice=self.choice[:, k],
+            second=self.second[k],
+            pattern=self.pattern[k],
         )
 
     def frame(self, number: int) -> Recording:

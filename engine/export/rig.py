@@ -47,6 +47,11 @@ class Rig:
         """Number of joints R."""
         return len(self.names)
 
+    def part(self, other: Rig) -> NDArray[np.int64]:
+        """(R,) where the joints of a rig in which fewer joints can stretch are in this one."""
+        further = self.skin[other.stretched, None] + np.array([-1, 0])
+        return np.concatenate([np.arange(len(self.skin)), further.ravel()])
+
 
 def make_rig(skeleton: Skeleton, stretched: NDArray[np.bool_]) -> Rig:
     """The rig in which the joints `stretched` (J,) bool can stretch what they move."""

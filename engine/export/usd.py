@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assets.character import SkinnedMesh
+from ..crowd.regions import SURFACES
 from ..errors import AssetError
 from .gltf import STILL, UNSEEN
 from .gltf_body import body_meshes, worn_triangles, worn_vertices
 from .local_motion import local_motion
 from .morph_targets import MorphTargets, morph_targets
-from .paints import to_linear
-from .recording import SURFACES, Recording
+from .pixels import to_linear
+from .recording import Recording
 from .rig import Rig, factors, levers, make_rig, reach
 from .targets import Exported, Progress, check_size, check_target, replacing
 from .usd_body import (
@@ -34,6 +35,7 @@ from .usd_body import (
     write_images,
 )
 from .usd_layer import KINDS, Layer, identifiers, import_pxr
+from .usd_shirts import ShirtMaterials
 
 __all__ = ["KINDS", "check_usd", "write_usd"]
 
@@ -69,7 +71,8 @@ def write_usd(
     Parameters
     ----------
     recording, path
-        What is written, and where; pictures of materials are written beside the file.
+        What is written, and where; pictures of materials and patterns are written beside
+        the file.
     level
         Level of detail of the meshes.
     baked
@@ -106,7 +109,8 @@ def write_usd(
     with replacing(target) as part:
         writer.layer.write(part)
         size = part.stat().st_size
-    size += sum((target.parent / name).stat().st_size for name in writer.images.values())
+    images = (*writer.images.values(), *writer.shirts.images.values())
+    size += sum((target.parent / name).stat().st_size for name in images)
     triangles = worn_triangles(recording, meshes)
     count, frames = len(recording), recording.frames
     return Exported(target, size, count, frames, triangles, stretched, deviation)
@@ -127,9 +131,14 @@ class _Writer:
         self.images = write_images(
             path, recording.character.materials, {mesh.material for mesh in meshes}
         )
+        self.shirts = ShirtMaterials(self.layer, f"{ROOT}/Shirts", recording, meshes, path)
         self._names = identifiers(tuple(mesh.name for mesh in meshes))
         self._worn = recording.worn(meshes)
-        _, looks = np.unique(self._worn, axis=0, return_inverse=True)
+        # Shirts of one look are all plain, or have each a pattern of their own.
+        shirts = np.array([self.shirts.covers(mesh) for mesh in meshes], np.bool_)
+        self._patterned: NDArray[np.bool_] = recording.patterned & self._worn[:, shirts].any(axis=1)
+        own = np.column_stack([self._worn, self._patterned])
+        _, looks = np.unique(own, axis=0, return_inverse=True)
         self._looks: NDArray[np.intp] = looks.ravel()
         self._progress = progress
         root = self.layer.prim(ROOT, "Xform")
@@ -193,7 +202,7 @@ class _Writer:
         layer.prim(folder, "Xform")
         self._add_materials(f"{ROOT}/Materials", own_colors=False)
         for name, mesh in zip(self._names, self.meshes, strict=True):
-            add_mesh(layer, f"{folder}/{name}", mesh)
+            self.shirts.add_coordinates(add_mesh(layer, f"{folder}/{name}", mesh), mesh)
         for k in range(len(recording)):
             path = self._agent_path(k)
             prim = layer.prim(path, "Xform")
@@ -217,6 +226,7 @@ class _Writer:
         for number, (name, mesh) in enumerate(zip(self._names, self.meshes, strict=True)):
             path = f"{_meshes(False)}/{name}"
             body = add_skinned_mesh(layer, path, mesh, targets.names, targets.offsets[number])
+            self.shirts.add_coordinates(body, mesh)
             if own_colors:
                 material = self.recording.character.materials[mesh.material]
                 set_display_color(layer, body, mesh, np.array(material.base_color[:3]))
@@ -242,8 +252,8 @@ class _Writer:
         layer.refer(layer.prim(f"{path}/Skeleton", "Skeleton"), _skeleton(can))
         if own_colors:
             layer.refer(layer.prim(f"{path}/Materials", "Scope"), _MATERIALS)
-        worn = self._worn[np.flatnonzero(self._looks == look)[0]]
-        for number in np.flatnonzero(worn).tolist():
+        wearer = int(np.flatnonzero(self._looks == look)[0])
+        for number in np.flatnonzero(self._worn[wearer]).tolist():
             name, mesh = self._names[number], self.meshes[number]
             prim = layer.prim(f"{path}/{name}", "Mesh")
             layer.refer(prim, f"{_meshes(can)}/{name}")
@@ -252,7 +262,9 @@ class _Writer:
                     f"{path}/{one.removeprefix(f'{PROTOTYPES}/')}"
                     for one in self._material(_MATERIALS, mesh)
                 )
-                bind_shades(layer, f"{path}/{name}", mesh, light, dark)
+                # What each wearer's prim is bound to counts where nothing below it is.
+                own = self._patterned[wearer] and self.shirts.covers(mesh)
+                bind_shades(layer, f"{path}/{name}", mesh, None if own else light, dark)
 
     @cached_property
     def _reachable(self) -> NDArray[np.float32]:
@@ -315,10 +327,14 @@ class _Writer:
             )
             weights = layer.floats(targets.weights[k])
             layer.set(animation, "blendShapeWeights", "float[]", weights)
-        prim = layer.prim(path, "SkelRoot", apis=("SkelBindingAPI",))
+        own = instances and bool(self._patterned[k])
+        apis = ("SkelBindingAPI", *(("MaterialBindingAPI",) if own else ()))
+        prim = layer.prim(path, "SkelRoot", apis=apis)
         layer.refer(prim, _prototype(int(self._looks[k]), can), instance=instances)
         layer.relate(prim, "skel:animationSource", moves)
         self._place(prim, k)
+        if own:
+            layer.relate(prim, "material:binding", self.shirts.material(k))
         if instances:
             for surface, rgb in zip(SURFACES, self.recording.colors[k], strict=True):
                 color = layer.pxr.Gf.Vec3f(*to_linear(rgb).tolist())
@@ -336,7 +352,10 @@ class _Writer:
         if material.name in SURFACES:
             rgb = to_linear(self.recording.colors[k, SURFACES.index(material.name)])
         set_display_color(self.layer, prim, mesh, rgb)
-        path, _ = self._material(f"{ROOT}/Materials", mesh)
+        if self._patterned[k] and self.shirts.covers(mesh):
+            path = self.shirts.material(k)
+        else:
+            path, _ = self._material(f"{ROOT}/Materials", mesh)
         self.layer.relate(prim, "material:binding", path)
 
     def _agent_path(self, k: int) -> str:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ..animation.skeleton import Skeleton
 from ..assets.character import Material, SkinnedMesh
 from ..assets.gltf_transforms import Transforms
-from .paints import png
+from .paints import has_coordinates
+from .pixels import png
 from .rig import Rig, bind_matrices
 from .targets import replacing
 from .usd_layer import Layer, identifiers
@@ -32,7 +33,7 @@ def add_mesh(layer: Layer, path: str, mesh: SkinnedMesh, *, apis: tuple[str, ...
     layer.set(prim, "faceVertexIndices", "int[]", corners)
     counts = layer.integers(np.full(len(mesh.triangles), 3))
     layer.set(prim, "faceVertexCounts", "int[]", counts)
-    if mesh.uvs.any():
+    if has_coordinates(mesh):
         uvs = np.stack([mesh.uvs[:, 0], 1.0 - mesh.uvs[:, 1]], axis=1)
         layer.primvar(prim, "st", "texCoord2f[]", layer.vectors(uvs), "vertex")
     return prim
@@ -130,13 +131,7 @@ def add_material(
     image
         The picture, relative to the file; it takes the place of the primvar.
     """
-    prim = layer.prim(path, "Material")
-    shader = layer.prim(f"{path}/Surface", "Shader")
-    layer.set(shader, "info:id", "token", "UsdPreviewSurface", uniform=True)
-    layer.set(shader, "inputs:roughness", "float", 0.9)
-    layer.set(shader, "inputs:metallic", "float", 0.0)
-    layer.set(shader, "outputs:surface", "token", None)
-    layer.connect(prim, "outputs:surface", "token", f"{path}/Surface.outputs:surface")
+    shader = add_surface_shader(layer, path)
     rgb = layer.pxr.Gf.Vec3f(*map(float, material.base_color[:3]))
     if image is not None:
         _add_texture(layer, path, shader, image, rgb, masked=_is_masked(material))
@@ -147,6 +142,32 @@ def add_material(
     layer.set(reader, "inputs:fallback", "float3", rgb)
     layer.set(reader, "outputs:result", "float3", None)
     layer.connect(shader, "inputs:diffuseColor", "color3f", f"{path}/Color.outputs:result")
+
+
+def add_surface_shader(layer: Layer, path: str) -> Any:
+    """Write a material with a shader that has no colour yet; the shader."""
+    prim = layer.prim(path, "Material")
+    shader = layer.prim(f"{path}/Surface", "Shader")
+    layer.set(shader, "info:id", "token", "UsdPreviewSurface", uniform=True)
+    layer.set(shader, "inputs:roughness", "float", 0.9)
+    layer.set(shader, "inputs:metallic", "float", 0.0)
+    layer.set(shader, "outputs:surface", "token", None)
+    layer.connect(prim, "outputs:surface", "token", f"{path}/Surface.outputs:surface")
+    return shader
+
+
+def add_reader(layer: Layer, path: str, image: str, primvar: str) -> Any:
+    """Write what reads a picture at the coordinates of a primvar; the texture."""
+    reader = layer.prim(f"{path}/Coordinates", "Shader")
+    layer.set(reader, "info:id", "token", "UsdPrimvarReader_float2", uniform=True)
+    layer.set(reader, "inputs:varname", "string", primvar)
+    layer.set(reader, "outputs:result", "float2", None)
+    texture = layer.prim(f"{path}/Texture", "Shader")
+    layer.set(texture, "info:id", "token", "UsdUVTexture", uniform=True)
+    layer.set(texture, "inputs:file", "asset", layer.sdf.AssetPath(image))
+    layer.connect(texture, "inputs:st", "float2", f"{path}/Coordinates.outputs:result")
+    layer.set(texture, "outputs:rgb", "float3", None)
+    return texture
 
 
 def set_display_color(layer: Layer, prim: Any, mesh: SkinnedMesh, rgb: NDArray[Any]) -> None:
@@ -176,13 +197,18 @@ def split_by_shade(layer: Layer, path: str, mesh: SkinnedMesh) -> None:
         layer.set(subset, "indices", "int[]", layer.integers(np.flatnonzero(faces)))
 
 
-def bind_shades(layer: Layer, path: str, mesh: SkinnedMesh, light: str, dark: str) -> None:
-    """Bind what references a mesh of `split_by_shade` to the materials of its faces."""
-    if not _dark_faces(mesh).any():
+def bind_shades(layer: Layer, path: str, mesh: SkinnedMesh, light: str | None, dark: str) -> None:
+    """Bind what references a mesh of `split_by_shade` to the materials of its faces.
+
+    Light faces have the material of what is above them if `light` is None.
+    """
+    dark_faces = _dark_faces(mesh).any()
+    if light is not None:
         layer.relate(layer.layer.GetPrimAtPath(path), "material:binding", light)
-        return
-    for name, material in (("light", light), ("dark", dark)):
-        layer.relate(layer.over(f"{path}/{name}"), "material:binding", material)
+        if dark_faces:
+            layer.relate(layer.over(f"{path}/light"), "material:binding", light)
+    if dark_faces:
+        layer.relate(layer.over(f"{path}/dark"), "material:binding", dark)
 
 
 def _dark_faces(mesh: SkinnedMesh) -> NDArray[np.bool_]:
@@ -193,20 +219,12 @@ def _dark_faces(mesh: SkinnedMesh) -> NDArray[np.bool_]:
 def _add_texture(
     layer: Layer, path: str, shader: Any, image: str, rgb: Any, *, masked: bool
 ) -> None:
-    reader = layer.prim(f"{path}/Coordinates", "Shader")
-    layer.set(reader, "info:id", "token", "UsdPrimvarReader_float2", uniform=True)
-    layer.set(reader, "inputs:varname", "string", "st")
-    layer.set(reader, "outputs:result", "float2", None)
-    texture = layer.prim(f"{path}/Texture", "Shader")
-    layer.set(texture, "info:id", "token", "UsdUVTexture", uniform=True)
-    layer.set(texture, "inputs:file", "asset", layer.sdf.AssetPath(image))
+    texture = add_reader(layer, path, image, "st")
     layer.set(texture, "inputs:sourceColorSpace", "token", "sRGB")
     layer.set(texture, "inputs:wrapS", "token", "repeat")
     layer.set(texture, "inputs:wrapT", "token", "repeat")
     tint = layer.pxr.Gf.Vec4f(rgb[0], rgb[1], rgb[2], 1.0)
     layer.set(texture, "inputs:scale", "float4", tint)
-    layer.connect(texture, "inputs:st", "float2", f"{path}/Coordinates.outputs:result")
-    layer.set(texture, "outputs:rgb", "float3", None)
     layer.connect(shader, "inputs:diffuseColor", "color3f", f"{path}/Texture.outputs:rgb")
     if masked:
         layer.set(texture, "outputs:a", "float", None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from errno import EIO
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -148,6 +149,7 @@ class Layer:
         return self.sdf.AttributeSpec(prim, name, types.Find(kind), variability)
 
 
+@cache
 def identifiers(names: tuple[str, ...]) -> tuple[str, ...]:
     """Unique names of prims for any names: ``"mixamorig:Hips"`` becomes ``"mixamorig_Hips"``."""
     made: list[str] = []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import fields
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from ...components.team import MOST_SIDES
 from ...engine.behaviour.events import Event
@@ -19,7 +19,7 @@ from ..exports import export
 from ..lifecycle import ancestors
 from ..node import Node
 from ..node3d import Node3D
-from ..resources import file_of
+from ..resources import file_of, missing
 from ..signals import Signal
 
 N = TypeVar("N", bound=Node)
@@ -141,6 +141,16 @@ class Stadium(Node3D):
         """Let the crowd see an event at the next tick."""
         self.simulation.send(event)
 
+    @classmethod
+    def _check_names(cls, name: str, value: Any) -> None:
+        if name == "behaviour" and value not in TABLES:
+            _check_file(name, value, f", and no table of that name ({', '.join(TABLES)})")
+        elif name == "character" and value:
+            _check_file(name, value)
+        elif name == "motions":
+            for path in value:
+                _check_file(name, path)
+
     def _sources(self) -> Iterable[tuple[str, Callable[[], object]]]:
         yield from ((path, self._body_changed) for path in (self.character, *self.motions))
         if self.behaviour not in TABLES:
@@ -215,6 +225,12 @@ def above(node: Node, kind: type[N]) -> N:
         if isinstance(one, kind):
             return one
     raise ValueError(f"{node!r} has no {kind.__name__} above it")
+
+
+def _check_file(name: str, path: str, more: str = "") -> None:
+    file = file_of(path)
+    if not file.is_file():
+        raise ValueError(f"Stadium.{name} is '{path}': {missing(file, more)}")
 
 
 def _file(path: str) -> str:

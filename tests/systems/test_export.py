@@ -135,9 +135,13 @@ def test_a_baked_moment_has_the_same_vertices(scene: Scene, tmp_path: Path) -> N
         scene.close(file.points(f"agent {agent}"), 5, int(agent))
 
 
+def plain(recording: Recording) -> Recording:
+    return replace(recording, pattern=np.zeros(len(recording), np.uint8))
+
+
 def test_agents_have_their_colours_and_seats(scene: Scene, tmp_path: Path) -> None:
     path = tmp_path / "crowd.glb"
-    export_gltf(scene.recording, path, split=True)
+    export_gltf(plain(scene.recording), path, split=True)
     file = GltfFile(path)
     for k, agent in enumerate(scene.recording.agents):
         srgb = scene.recording.colors[k, 2] / 255.0
@@ -269,7 +273,8 @@ def test_usdskel_moves_agents_like_the_crowd(
 
     path = tmp_path / "crowd.usdc"
     done = export_usd(scene.recording, path, instances=instances)
-    assert (done.agents, done.frames, done.size) == (4, 7, path.stat().st_size)
+    assert (done.agents, done.frames) == (4, 7)
+    assert done.size == sum(file.stat().st_size for file in tmp_path.iterdir())
     assert usd.complaints(path) == []
     for frame in (0, 3, 6):
         for agent in scene.recording.agents:
@@ -304,7 +309,7 @@ def test_usd_agents_have_their_colours(scene: Scene, usd: ModuleType, tmp_path: 
     from pxr import Usd, UsdGeom, UsdShade
 
     path = tmp_path / "crowd.usda"
-    export_usd(scene.recording.frame(0), path)
+    export_usd(plain(scene.recording.frame(0)), path)
     stage = Usd.Stage.Open(str(path))
     for k, agent in enumerate(scene.recording.agents):
         prim = stage.GetPrimAtPath(f"/Crowd/agent_{agent}")
@@ -318,7 +323,7 @@ def test_usd_agents_have_their_colours(scene: Scene, usd: ModuleType, tmp_path: 
         material, _ = UsdShade.MaterialBindingAPI(shirt).ComputeBoundMaterial()
         assert material.GetPrim().GetName() == "shirt"
     own = tmp_path / "own.usda"
-    export_usd(scene.recording.frame(0), own, instances=False)
+    export_usd(plain(scene.recording.frame(0)), own, instances=False)
     stage = Usd.Stage.Open(str(own))
     agent = int(scene.recording.agents[0])
     prims = stage.GetPrimAtPath(f"/Crowd/agent_{agent}").GetChildren()

@@ -12,7 +12,8 @@ from tifo.engine.crowd.morphs import morph_weights, morphed_positions
 from tifo.engine.errors import AssetError
 from tifo.engine.export.gltf_file import exact
 from tifo.engine.export.morph_targets import morph_targets
-from tifo.engine.export.paints import mix_paints, to_linear
+from tifo.engine.export.paints import mix_paints
+from tifo.engine.export.pixels import to_linear
 from tifo.engine.export.recording import Recording
 from tifo.engine.export.targets import check_size, check_target, replacing
 from tifo.engine.export.usd_layer import identifiers

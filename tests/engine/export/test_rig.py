@@ -58,6 +58,16 @@ def test_names_of_further_joints_are_new_and_parents_come_first() -> None:
     assert rig.skin.tolist() == [0, 5, 7, 3]
 
 
+def test_a_rig_in_which_less_can_stretch_is_a_part_of_another() -> None:
+    skeleton = chain()
+    whole = make_rig(skeleton, np.array([True, True, False, True]))
+    for mask in ([True, False, False, True], [False, True, False, False], [False] * 4):
+        less = make_rig(skeleton, np.array(mask))
+        part = whole.part(less)
+        assert [whole.names[joint] for joint in part] == list(less.names)
+        np.testing.assert_array_equal(part[less.parents[1:]], whole.parents[part[1:]])
+
+
 def test_reach_is_the_farthest_vertex_times_its_weight() -> None:
     skeleton = make_skeleton([-1, 0], [[0.0, 1.0, 0.0], [0.0, 0.7, 0.0]])
     mesh = make_box(skeleton, np.array([0.0, 1.0, 0.0]), np.array([0.3, 1.0, 0.4]))

@@ -245,3 +245,50 @@ def test_a_games_own_class_goes_before_one_of_tifo(tmp_path: Path) -> None:
     again = load_scene(tmp_path / "b.toml").instantiate()
     assert isinstance(again, tifo.Player)
     assert again.number == 7
+
+
+TABLES = "sport, rock_concert, classical_concert, speech"
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (
+            'behaviour = "res://concert_nigth.toml"',
+            "Stadium.behaviour is 'res://concert_nigth.toml': there is no such file, and no table "
+            f"of that name ({TABLES}); did you mean concert_night.toml?",
+        ),
+        (
+            'behaviour = "opera"',
+            "Stadium.behaviour is 'opera': there is no such file, and no table of that name "
+            f"({TABLES})",
+        ),
+        (
+            'character = "res://fan.glb"',
+            "Stadium.character is 'res://fan.glb': there is no such file",
+        ),
+        (
+            'motions = ["res://concert_night.toml", "res://wave.bvh"]',
+            "Stadium.motions is 'res://wave.bvh': there is no such file",
+        ),
+        ('behaviour = "res://../a.toml"', "res://../a.toml: leads out of the resource folder"),
+    ],
+)
+def test_a_scene_that_names_a_file_that_is_not_there(folder: Path, given: str, said: str) -> None:
+    (folder / "concert_night.toml").write_text("")
+    scene = '[[node]]\nname = "Ground"\ntype = "Stadium"\n[node.exports]\nlayout = "stand"\n'
+    (folder / "ground.toml").write_text(scene + given + "\n")
+    with pytest.raises(tifo.AssetError) as caught:
+        load_scene("res://ground.toml")
+    assert str(caught.value) == f"res://ground.toml, line 6: {said}"
+
+
+def test_a_scene_may_name_tables_and_files_that_are_there(
+    folder: Path,
+) -> None:
+    (folder / "own.toml").write_text("")
+    scene = '[[node]]\nname = "A"\ntype = "Stadium"\n[node.exports]\ncharacter = ""\n'
+    for number, behaviour in enumerate(("speech", "res://own.toml", str(folder / "own.toml"))):
+        path = folder / f"{number}.toml"
+        path.write_text(f"{scene}behaviour = '{behaviour}'\n")
+        assert load_scene(path).entries[0].values["behaviour"] == behaviour
