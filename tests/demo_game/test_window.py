@@ -51,11 +51,11 @@ def main():
     ticks(3)
     assert reacting(0) > 0.85 and 0.3 < reacting(1) < 0.8, (reacting(0), reacting(1))
 
-    before = crowd.behaviour.stirred_until.copy()
+    before = crowd.behaviour.event.copy()
     game.window.dispatch_event("on_mouse_press", 160, 100, mouse.LEFT, 0)
     game.window.dispatch_event("on_mouse_release", 160, 100, mouse.LEFT, 0)
     ticks(3)
-    changed = np.flatnonzero(crowd.behaviour.stirred_until != before)
+    changed = np.flatnonzero(crowd.behaviour.event != before)
     places = crowd.placement.position[:, changed]
     assert 1 <= len(changed) < 200 and np.ptp(places[0]) < 15, len(changed)
 

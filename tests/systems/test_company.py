@@ -131,10 +131,12 @@ def test_a_common_beat_is_heard_in_the_claps(spectators: Make) -> None:
     crowd.on_clip_event("clap_contact", lambda agents, _: claps.append(len(agents)))
 
     def unevenness() -> float:
-        claps.clear()
+        heard = []
         for _ in range(60):
+            claps.clear()
             simulation.run(seconds=TICK)
-        return float(np.std(claps) / max(np.mean(claps), 1e-6))
+            heard.append(sum(claps))
+        return float(np.std(heard) / max(np.mean(heard), 1e-6))
 
     free = unevenness()
     rhythm.phase[:] = 0.0
@@ -143,7 +145,7 @@ def test_a_common_beat_is_heard_in_the_claps(spectators: Make) -> None:
     rhythm._felt[:] = 0.0
     common = unevenness()
     assert free < 0.4
-    assert common > 0.7
+    assert common > 1.8
 
 
 def test_a_wave_runs_along_the_stand_at_the_speed_of_waves(spectators: Make) -> None:
