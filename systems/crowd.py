@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
@@ -41,19 +40,18 @@ from ..engine.crowd.regions import Regions
 from ..engine.crowd.seating import SeatPlan
 from ..engine.crowd.spec import CrowdSpec
 from ..engine.overrides import JointOverride, OverrideSet
-from ..engine.streams.asking import ask_dilation, ask_streamed, ask_unique
 from ..engine.streams.baked import BakedPoses
-from ..engine.streams.blend_counts import LadderCounts
 from ..engine.streams.blending import agent_palettes
-from ..engine.streams.event_feed import ClipEventFeed, Listener
-from ..engine.streams.ladder import BlendLadder, Focus
+from ..engine.streams.event_feed import ClipEventFeed
+from ..engine.streams.ladder import BlendLadder
 from ..engine.streams.overlaying import OverlayStage
-from ..engine.streams.pool import POSE_RATE, Stream, StreamPool
-from ..engine.streams.uniques import Unique, UniquePool
+from ..engine.streams.pool import POSE_RATE, StreamPool
 from .coming import Coming
+from .crowd_blends import BlendCalls
 from .crowd_drawing import DrawingCalls
-from .crowd_overlays import BLEND_SECONDS, OverlayCalls, unstreamed
+from .crowd_overlays import OverlayCalls
 from .crowd_queries import QueryCalls
+from .crowd_time import TimeCalls
 from .guiding import Guiding
 from .observing import Observers
 from .watching import WatchingCalls
@@ -62,12 +60,11 @@ if TYPE_CHECKING:
     from .part import Part
     from .render_embedded import CrowdMirrors
 
-FOCUS_RADIUS = 60.0
-"""Metres around a focus in which agents never jump."""
-
 
 @dataclass(slots=True, eq=False)
-class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCalls):
+class Crowd(
+    BlendCalls, TimeCalls, OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCalls
+):
     """One crowd: an entity, and its components at hand.
 
     Attributes
@@ -198,89 +195,6 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCal
         """
         return self.company.start_wave(agents)
 
-    @property
-    def uniques(self) -> UniquePool:
-        """Motions that are not shared; ValueError in a baked crowd."""
-        return self._ladder().uniques
-
-    @property
-    def blend_counts(self) -> LadderCounts:
-        """How many changes of motion took which rung of the blend ladder."""
-        return self._ladder().counts
-
-    def transition_to_streamed(
-        self,
-        agents: int | ArrayLike,
-        stream: Stream,
-        part: int = 0,
-        *,
-        duration: float | ArrayLike = BLEND_SECONDS,
-        offset: float | ArrayLike | None = None,
-    ) -> None:
-        """Ask agents to blend to a stream; it begins at the next pose tick.
-
-        Never fails for want of room, and the last request of an agent is the one it ends on; see
-        `tifo.engine.streams.ladder`.
-
-        Parameters
-        ----------
-        agents
-            An id, ids, or a (N,) boolean mask.
-        stream
-            One of `pool`.
-        part
-            0 for the body; ``1 + k`` for the motion of overlay layer k, see `overlay`.
-        duration
-            Seconds of the blend, for all or for each; 0 jumps.
-        offset
-            Poses behind the stream's head, for all or for each; None draws one for each agent.
-
-        Raises
-        ------
-        ValueError
-            For a baked crowd, agents that don't exist, a stale stream, or values out of range.
-        """
-        ask_streamed(self._ladder(), agents, stream, part, duration, offset)
-
-    def transition_to_unique(
-        self,
-        agents: int | ArrayLike,
-        unique: Unique,
-        part: int = 0,
-        *,
-        duration: float | ArrayLike = BLEND_SECONDS,
-    ) -> None:
-        """Ask agents to blend to a unique; as `transition_to_streamed`, without an offset."""
-        ask_unique(self._ladder(), agents, unique, part, duration)
-
-    def set_focus(
-        self, place: tuple[float, float, float] | None, *, radius: float = FOCUS_RADIUS
-    ) -> None:
-        """Say where people look, so that only agents farther away may ever jump.
-
-        Parameters
-        ----------
-        place
-            Metres in the stadium's frame; None, as at first, lets nobody jump.
-        radius
-            Metres around it.
-        """
-        if place is None:
-            self._ladder().focus = None
-            return
-        if not np.isfinite(place).all() or np.shape(place) != (3,):
-            raise ValueError(f"place is {place}, expected three finite numbers")
-        if not radius >= 0:
-            raise ValueError(f"radius is {radius}, expected metres >= 0")
-        self._ladder().focus = Focus(place, radius)
-
-    def _ladder(self) -> BlendLadder:
-        if self.ladder is None:
-            raise ValueError(
-                f"this crowd {unstreamed(self.spec)} and can't blend; use poses='streams'"
-            )
-        return self.ladder
-
     def palettes(
         self, agents: NDArray[np.int64], tick: int, alpha: float = 1.0
     ) -> NDArray[np.float32]:
@@ -343,90 +257,6 @@ class Crowd(OverlayCalls, QueryCalls, DrawingCalls, Guiding, Coming, WatchingCal
             (4,) numbers for all of them, or (K, 4).
         """
         self.overrides.set_values(name, agent_ids(agents, len(self)), values)
-
-    def dilate(
-        self, agents: NDArray[np.int64], targets: NDArray[np.float32], seconds: float
-    ) -> None:
-        """Let agents play closer to their stream's head or farther behind, from the next pose tick.
-
-        They get there a little faster or slower than their motion, so nothing jumps. Where
-        `seconds` is too short to be unseen it takes longer, which `dilation.lengthened` counts.
-
-        Parameters
-        ----------
-        agents, targets
-            (K,) ids, and offsets in poses that their streams' histories have room for.
-        seconds
-            How long it may take.
-
-        Raises
-        ------
-        ValueError
-            For a baked crowd, unknown agents, targets that no stream has room for, or a time
-            outside 0 to 86,400 s.
-        """
-        ask_dilation(self.dilation, self._streams(), len(self), agents, targets, seconds)
-
-    def set_history(self, history: int, seconds: float = 3.0) -> None:
-        """Let all streams keep more or fewer poses; agents spread over them as they were spread.
-
-        Parameters
-        ----------
-        history
-            M, 2 to the ring's capacity less 2.
-        seconds
-            How long agents may take to get where they shall be; it takes longer where that would
-            be seen.
-
-        Raises
-        ------
-        ValueError
-            For a baked crowd, a history that the ring has no room for, or a wrong time.
-        """
-        pool = self._streams()
-        assert self.anim is not None
-        row = self.anim.row[0]
-        agents = np.flatnonzero(row < pool.store.stream_rows)
-        before = np.maximum(pool.history_goal[row[agents]] - 2, 1)
-        for stream in np.flatnonzero(pool.alive):
-            pool.set_history(pool.stream(int(stream)), history)
-        share = np.float32(history - 2) / before.astype(np.float32)
-        targets = np.minimum(self.anim.target[0, agents] * share, np.float32(history - 2))
-        self.dilate(agents, targets, seconds)
-
-    def on_clip_event(self, name: str, listener: Listener) -> Callable[[], None]:
-        """Call `listener(agents, weights)` whenever agents play past the event.
-
-        The arrays are as for `clip_events`.
-
-        Returns
-        -------
-        Callable
-            Ends the subscription.
-
-        Raises
-        ------
-        ValueError
-            For a baked crowd, or a name that no clip has.
-        """
-        self._streams()
-        assert self.clip_feed is not None
-        return self.clip_feed.on(name, listener)
-
-    def clip_events(self, name: str) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
-        """Agents (K,) that played past the event in the current pose tick, and weights (K,).
-
-        Errors as for `on_clip_event`.
-        """
-        self._streams()
-        assert self.clip_feed is not None
-        return self.clip_feed.passed(name)
-
-    def _streams(self) -> StreamPool:
-        if self.pool is None:
-            kept = self.spec.poses
-            raise ValueError(f"this crowd's poses are {kept}; streams have offsets and clip events")
-        return self.pool
 
     def state_hash(self) -> str:
         """Digest of everything that the simulation decided; equal for equal seeds and inputs."""
