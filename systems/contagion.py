@@ -1,13 +1,14 @@
-"""Beats and offsets of those who clap, after agents were put on their streams."""
+"""Beats and offsets of those who clap, after what they show is known."""
 
 from __future__ import annotations
 
 import esper
 
-from ..components import AgentAnimID
+from ..components import AgentAnimID, MotionState
 from ..engine.behaviour.clap_motion import ClapMotion
 from ..engine.behaviour.company import Company
 from ..engine.clock import Clock
+from ..engine.crowd.motions import MotionLibrary
 from ..engine.streams.pool import StreamPool
 from .query import crowds
 
@@ -22,3 +23,7 @@ class ClapSystem(esper.Processor):
         for entity, (motion, company, pool) in crowds(ClapMotion, Company, StreamPool):
             anim = esper.component_for_entity(entity, AgentAnimID)
             motion.step(clock.pose_tick, pool, anim, company.rhythm)
+        for entity, (motion, company, state) in crowds(ClapMotion, Company, MotionState):
+            if not esper.has_component(entity, StreamPool):
+                clips = esper.component_for_entity(entity, MotionLibrary).clips
+                motion.step_unseen(clock.pose_tick, state.shown, clips, company.rhythm)

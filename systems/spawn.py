@@ -191,6 +191,9 @@ def spawn_crowd(
         _add_baked(crowd, bank, figure, rng_motion)
     elif spec.poses == "streams":
         _add_streams(crowd, bank, figure, cast, steps, offsets or spec.offsets, rng_motion)
+    else:
+        beats = ClapMotion(steps.clips if steps else cast.clips, count)
+        esper.add_component(crowd.entity, beats)
     if spec.casting and spec.poses != "none":
         # Offsets that the user gave stay with whom they were given to.
         own = callable(offsets or spec.offsets)

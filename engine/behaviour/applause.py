@@ -33,8 +33,10 @@ from .rates import check_rates
 
 IDLE, CLAPPING, RESTING = 0, 1, 2
 
-_BATCH = 8192
-"""Of more clappers than this, a random part decides in each step, for that much longer."""
+_BATCH = 16384
+"""Of more clappers than this, a random part decides in each step, as much more readily."""
+_MOST_PARTS = 6
+"""Such parts, at most; a hazard of stopping above 30 / 6 a second, a rare one, counts as that."""
 _FORGOTTEN = 0.01
 """Benefit of a cue below which nobody begins to clap for it any more."""
 _LEAST_REST, _LOOK_EVERY = 0.4, 0.3
@@ -159,6 +161,7 @@ class Applause:
         self.active = np.zeros(0, np.int64)
         self._benefit = np.zeros(count, np.float32)
         self._since = np.zeros(count, np.float64)  # of the cue
+        self._until_seen = np.zeros(count, np.float32)  # benefit before: what was left of another
         self._begin = np.zeros(count, np.float64)  # of the clapping
         self._earlier = np.zeros(count, np.float32)  # claps felt at the end of the last clapping
         self._end = np.zeros(count, np.float64)  # of that
@@ -176,7 +179,7 @@ class Applause:
         return len(self.active) / max(float(self.hearing.sizes.sum()), 1.0)
 
     def cue(self, agents: int | ArrayLike, benefit: float | ArrayLike) -> None:
-        """Something worth clapping for, as soon as they have seen it.
+        """Something worth clapping for, once they have seen it, unless more is left of another cue.
 
         Parameters
         ----------
@@ -191,34 +194,41 @@ class Applause:
         ids, values = ids[keep], values[keep]
         if len(ids) == 0:
             return
+        self._wake_up(np.unique(ids[self.state[ids] == RESTING]))
         seen = self._now + self.rates.reaction
+        left = self._left(ids)
+        new = (values > self._promised(left, ids)) | (values < 0.0)
+        ids, values, left = ids[new], values[new], left[new]
+        self._until_seen[ids] = np.maximum(left, 0.0)
         self._benefit[ids] = values
         self._since[ids] = np.where(values < 0.0, self._now, seen)  # nobody refuses too late
-        self._wake_up(np.unique(ids[self.state[ids] == RESTING]))
-        self._highest = (max(self._bound(), float(values.max())), seen)
+        self._highest = (max(self._bound(), float(values.max(initial=0.0))), seen)
 
     def cue_crowd(
         self, who: NDArray[np.bool_], benefit: NDArray[np.float32] | float, *, refuse: bool = False
     ) -> None:
         """`cue` for much of the crowd at once.
 
-        Parameters
-        ----------
-        who
-            (N,) whom it concerns.
-        benefit
-            One for all or (N,), finite; of those whom it doesn't concern nothing is read.
-        refuse
-            Whether it is below 0, for all of them.
+        `who` (N,) is whom it concerns; `benefit` one for all or (N,), finite, and nothing is read
+        of others; `refuse` says whether it is below 0, for all of them.
         """
         who = who & self.hearing.present
+        self._wake_up(np.flatnonzero(who & (self.state == RESTING)))
+        highest = float(np.max(benefit))
+        if highest == 0.0 and not refuse:
+            who &= self._benefit < 0.0  # it ends a refusal, and nothing else
         if not who.any():
             return
         seen = self._now + self.rates.reaction
+        before = np.zeros(1, np.float32)
+        if self._bound() > 0.0 and not refuse:
+            left = self._left()
+            who &= benefit > self._promised(left)
+            before = np.maximum(left, np.float32(0.0))
+        np.copyto(self._until_seen, before, where=who)
         np.copyto(self._benefit, benefit, where=who, casting="same_kind")
         np.copyto(self._since, self._now if refuse else seen, where=who)
-        self._wake_up(np.flatnonzero(who & (self.state == RESTING)))
-        self._highest = (max(self._bound(), float(np.max(benefit))), seen)
+        self._highest = (max(self._bound(), highest), seen)
 
     def start(self, agents: int | ArrayLike) -> None:
         """Let agents clap from now on, whatever they think of it; absent ones don't."""
@@ -247,21 +257,12 @@ class Applause:
         return self.hearing.share(self._clapping_of)
 
     def benefit(self, agents: NDArray[np.int64]) -> NDArray[np.float32]:
-        """(K,) benefit b of agents now: what is left of the cue, and the ground.
-
-        One who refuses goes on refusing: a cue below 0 does not fade, and wins over the ground.
-        """
-        age = (self._now - self._since[agents]).astype(np.float32)
-        cue = np.where(age >= 0.0, self._benefit[agents], np.float32(0.0))
-        left = cue * np.exp2(age * np.float32(-1.0 / self.rates.half_life))
-        result: NDArray[np.float32] = np.where(cue < 0, cue, left + self.ground[agents])
-        return result
+        """(K,) benefit b of agents now: ground and what is left of a cue; below 0 they refuse."""
+        left = self._left(agents)
+        return np.where(left < 0, left, left + self.ground[agents])
 
     def step(self, dt: float) -> ApplauseChange:
-        """Advance by `dt` seconds.
-
-        A pose tick is best (1/30 s); `dt` must be below a clap.
-        """
+        """Advance by `dt` seconds, less than a clap; a pose tick is best (1/30 s)."""
         if not 0 < dt <= 0.2:
             raise ValueError(f"dt is {dt}, expected more than 0 and at most 0.2 seconds")
         self._now += dt
@@ -276,6 +277,20 @@ class Applause:
         if len(started):
             self._begin_clapping(started)
         return ApplauseChange(started, stopped)
+
+    def _left(self, agents: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.float32]:
+        """(K,) what is left of the cue; below 0 it doesn't fade."""
+        age = (self._now - self._since[agents]).astype(np.float32)
+        cue = np.where(age >= 0.0, self._benefit[agents], self._until_seen[agents])
+        fading = np.exp2(age * np.float32(-1.0 / self.rates.half_life))
+        return np.where(cue < 0, cue, cue * fading)
+
+    def _promised(
+        self, left: NDArray[np.float32], agents: NDArray[np.int64] | slice = slice(None)
+    ) -> NDArray[np.float32]:
+        """(K,) what is left, or what it will be once the cue has been seen, if that is more."""
+        coming = np.maximum(left, self._benefit[agents])
+        return np.where(self._since[agents] > self._now, coming, left)
 
     def _bound(self) -> float:
         """At least the benefit that any cue still has."""
@@ -305,10 +320,10 @@ class Applause:
         """Ids that stop: because they have had enough, or because nobody joined them."""
         if len(self.active) == 0:
             return self.active
-        parts = 1 + len(self.active) // _BATCH
+        parts = min(1 + len(self.active) // _BATCH, _MOST_PARTS)
         part, count = int(self._rng.integers(parts)), len(self.active)
         ids = self.active[part * count // parts : (part + 1) * count // parts]
-        chance = -np.expm1(-np.float32(dt * parts) * self._stop_hazard(ids, clapping))
+        chance = np.float32(-parts) * np.expm1(-np.float32(dt) * self._stop_hazard(ids, clapping))
         tired: NDArray[np.int64] = ids[self._rng.random(len(ids), np.float32) < chance]
         is_lonely = (self._clapping_of > 0) & (self._answered < self._now)
         if not is_lonely.any():

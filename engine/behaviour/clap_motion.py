@@ -2,7 +2,8 @@
 
 Which streams are clap streams is told by their clips: those whose tags ``clap_contact`` are evenly
 spaced. An agent on one shows its beat by its offset (`clap_stream`), so the clip events that are
-delivered to it follow its beat as well.
+delivered to it follow its beat as well. Where nobody has poses, whoever would show such a clip has
+a beat.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class ClapMotion:
     Attributes
     ----------
     clappers
-        (K,) int64 ids on clap streams, ascending.
+        (K,) int64 ids on clap streams, ascending; of those who show a clap clip, if there are none.
     """
 
     def __init__(self, clips: Sequence[Clip], count: int) -> None:
@@ -92,6 +93,19 @@ class ClapMotion:
         if len(change.agents):
             self._write(anim, tick, change.agents, change.start, change.slope, period)
 
+    def step_unseen(
+        self,
+        tick: int,
+        shown: NDArray[np.integer],
+        clips: NDArray[np.integer],
+        rhythm: Rhythm,
+    ) -> None:
+        """Advance the beats of a crowd without streams: `shown` (N,) motions have `clips` (K,)."""
+        begun = self._find(tick, shown, np.append(self._period[clips] > 0, False))
+        if len(begun):
+            rhythm.begin(begun)
+        rhythm.step(self.clappers, 1.0 / POSE_RATE)
+
     def _write(
         self,
         anim: AgentAnimID,
@@ -117,7 +131,7 @@ class ClapMotion:
         anim.version += 1
 
     def _find(
-        self, tick: int, row: NDArray[np.int32], good: NDArray[np.bool_]
+        self, tick: int, row: NDArray[np.integer], good: NDArray[np.bool_]
     ) -> NDArray[np.int64]:
         """Keep `clappers` up to date; ids of new ones."""
         before = self.clappers

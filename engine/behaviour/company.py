@@ -220,6 +220,10 @@ class Company:
             if len(ids):
                 wanted[ids] = value
                 wake(behaviour, 0, ids, tick)
+        # Others hear who begins from now on, so it begins now, unless its arms do something else.
+        at_rest = started[behaviour.arms[started] == 0]
+        if len(at_rest):
+            wake(behaviour, 0, at_rest, tick, rapid=True)
         self._watch_player(tick, behaviour)
         self.following.step(tick, behaviour, self._away)
         waving = self.signals["wave_wanted"]

@@ -32,6 +32,52 @@ def test_small_groups_clap_like_those_of_the_study(rng: np.random.Generator) -> 
     assert bouts.length.std() > 0.7
 
 
+@pytest.mark.slow
+def test_many_clappers_stop_no_later_than_few(rng: np.random.Generator) -> None:
+    """Of many clappers a part decides at a time; each stops as it would in a room by itself."""
+    few = np.concatenate([applaud(rng.integers(13, 21, 400), 1.0, rng).length for _ in range(12)])
+    many = applaud(rng.integers(13, 21, 5000), 1.0, rng).length
+    # Standard errors of 0.02 s; deciding for so much longer instead takes 0.25 s more.
+    assert many.mean() == pytest.approx(few.mean(), abs=0.1)
+
+
+@pytest.mark.parametrize("crowd", [False, True])
+def test_another_cue_counts_as_soon_as_it_is_seen(crowd: bool, rng: np.random.Generator) -> None:
+    """And until then what is left of the one before, of which a smaller one takes nothing."""
+    applause = Applause(rooms(3, 2), rng)
+    everyone = np.arange(6)
+
+    def cue(benefit: float) -> None:
+        if crowd:
+            applause.cue_crowd(np.ones(6, np.bool_), benefit, refuse=benefit < 0)
+        else:
+            applause.cue(everyone, benefit)
+
+    def after(ticks: int) -> float:
+        for _ in range(ticks):
+            applause.step(TICK)
+        return float(applause.benefit(everyone)[0])
+
+    applause.state[:] = RESTING  # so that nobody claps; cues wake them
+    cue(0.4)
+    assert after(1) == 0.0
+    assert after(29) == pytest.approx(0.4 * 0.5 ** (0.8 / 20.0), rel=1e-3)
+    cue(0.1)
+    assert after(1) == pytest.approx(0.4 * 0.5 ** (0.8 / 20.0), rel=5e-3)
+    cue(0.45)
+    assert after(3) == pytest.approx(0.4 * 0.5 ** (0.8 / 20.0), rel=2e-2)
+    assert after(6) == pytest.approx(0.45, rel=1e-2)
+    cue(0.6)
+    cue(0.5)  # at the same time
+    assert after(3) == pytest.approx(0.45, rel=2e-2)
+    assert after(6) == pytest.approx(0.6, rel=1e-2)
+    cue(-1.0)
+    assert after(1) == -1.0
+    cue(0.0)
+    assert after(1) == 0.0
+    assert after(9) == 0.0
+
+
 def test_starting_is_ten_times_as_likely_with_half_the_room(rng: np.random.Generator) -> None:
     shares = np.array([0.05, 0.1, 0.2, 0.35, 0.5])
     rates = np.array([starting_rate(float(share), 600_000, rng) for share in shares])

@@ -18,6 +18,7 @@ from tifo.engine.crowd.sightline import (
     riser_for,
     steepest,
 )
+from tifo.engine.crowd.stadium import build_stadium_mesh
 from tifo.engine.crowd.stand import build_stand
 
 
@@ -107,6 +108,43 @@ def test_first_row_sees_the_touchline_over_the_boards() -> None:
     eye = tier.heights[0] + 1.2
     # Boards 0.9 m high stand 3.5 m behind the touchline, the eye 8.48 m.
     assert eye * 3.5 / 8.48 >= 0.9
+
+
+def is_hidden(corners: np.ndarray, eye: np.ndarray, point: np.ndarray) -> bool:
+    """Whether a triangle, of (T, 3, 3) corners, lies between an eye and a point.
+
+    Those that the line's plane does not meet are left out; the rest by Moeller and Trumbore.
+    """
+    way = point - eye
+    across = (corners - eye) @ np.array([way[2], 0.0, -way[0]])
+    a, b, c = corners[(across.min(axis=1) <= 0) & (across.max(axis=1) >= 0)].transpose(1, 0, 2)
+    side = np.cross(way, c - a)
+    volume = ((b - a) * side).sum(axis=1)
+    some = np.abs(volume) > 1e-12
+    a, b, c, side, volume = a[some], b[some], c[some], side[some], volume[some]
+    u = ((eye - a) * side).sum(axis=1) / volume
+    across = np.cross(eye - a, b - a)
+    v = across @ way / volume
+    t = ((c - a) * across).sum(axis=1) / volume
+    hits = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 1e-3) & (t < 0.995)
+    return bool(hits.any())
+
+
+@pytest.mark.parametrize("seats", [2000, pytest.param(65_000, marks=pytest.mark.slow)])
+def test_nothing_that_is_built_hides_the_touchline(seats: int) -> None:
+    """Rails, parapets, roofs and boards; the first rows of a tier look over its parapet."""
+    plan = build_bowl(seats)
+    mesh = build_stadium_mesh(plan)
+    corners = mesh.positions[mesh.triangles].astype(np.float64)
+    x, y, z = plan.position.astype(np.float64)
+    eyes = np.stack([x - 0.35 * np.sin(plan.yaw), y + 1.2, z - 0.35 * np.cos(plan.yaw)], axis=1)
+    points = np.stack([x.clip(-52.5, 52.5), np.full(len(x), 0.05), z.clip(-34.0, 34.0)], axis=1)
+    rng = np.random.default_rng(0)
+    fronts = np.flatnonzero(np.isin(plan.row, [tier.first_row for tier in plan.structure.tiers]))
+    few = np.concatenate([rng.choice(fronts, 20), rng.integers(0, plan.count, 20)])
+    assert not any(is_hidden(corners, eyes[seat], points[seat]) for seat in few)
+    low = eyes - [0.0, 0.8, 0.0]  # from the ground of a row one sees the row in front
+    assert sum(is_hidden(corners, low[seat], points[seat]) for seat in few) > 15
 
 
 def test_stand() -> None:
