@@ -178,10 +178,18 @@ def add_gaits(
 def start_gaits(
     pool: StreamPool, gaits: Sequence[Gait], first_clip: int, streams: MotionStreams
 ) -> MotionStreams:
-    """Start a stream for each gait, on rows that are free; places of all motions with them."""
-    rows = [
-        pool.add(first_clip + k, speed=gait.rate, looping=True).row for k, gait in enumerate(gaits)
+    """Start a stream for each gait, on rows that are free; places of all motions with them.
+
+    Where other motions are shown on the pool's body types, gaits are as well.
+    """
+    started = [
+        pool.add(first_clip + k, speed=gait.rate, looping=True) for k, gait in enumerate(gaits)
     ]
+    if len(pool.twins):
+        for stream in started:
+            for kind in pool.twins.types:
+                pool.add_twin(stream, kind.name)
+    rows = [stream.row for stream in started]
     ones = np.ones(len(rows), np.int32)
     shared = streams.shared
     return replace(
