@@ -22,6 +22,7 @@ from ..engine.crowd.stadium import build_seats
 from . import experiments as ex
 from .measure import environment, spread
 from .plot import Panel, draw_panels
+from .walking import walking_costs
 
 TICK = ex.TICK
 
@@ -65,6 +66,9 @@ def behaviour(
     if plot is not None:
         draw_panels(panels, plot)
     costs = tick_costs(plan, present, runs, rng)
+    walking, people = walking_costs(runs, seed)
+    costs["walking"] = spread(walking)
+    figures.append(Figure("people on their way, timed as walking", f"{people}", ""))
     return {
         "benchmark": "behaviour",
         "agents": agents,

@@ -19,7 +19,7 @@ from .placement import Placement
 from .seat import Seat, Section
 from .team import Team
 from .view import View
-from .walk import Errand, Stage, Walk
+from .walk import Errand, Leg, Stage, Walk
 
 __all__ = [
     "MOST_PARTS",
@@ -34,6 +34,7 @@ __all__ = [
     "DilationRequest",
     "Emotion",
     "Errand",
+    "Leg",
     "Level",
     "MotionState",
     "Overlays",

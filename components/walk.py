@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -24,35 +24,67 @@ class Stage(IntEnum):
     WALK = 1
     SETTLE = 2
     STAND = 3
+    GONE = 4
 
 
-_COLUMNS: dict[str, tuple[type, tuple[int, ...]]] = {
-    "agent": (np.int64, ()),
-    "errand": (np.int8, ()),
-    "stage": (np.int8, ()),
-    "pace": (np.float32, ()),
-    "speed": (np.float32, ()),
-    "aside": (np.float32, ()),
-    "drift": (np.float32, ()),
-    "vertex": (np.int32, ()),
-    "along": (np.float32, ()),
-    "last": (np.int32, ()),
-    "mouth": (np.int32, ()),
-    "seat0": (np.int32, ()),
-    "first": (np.int64, ()),
-    "step": (np.int8, ()),
-    "run": (np.int64, ()),
-    "granted": (np.bool_, ()),
-    "waited": (np.float32, ()),
-    "until": (np.int32, ()),
-    "since": (np.int32, ()),
-    "motion": (np.int16, ()),
+class Leg(IntEnum):
+    """What is known of the stretch of a way from one vertex to the next: rows of a table.
+
+    The first seven are as at its beginning, and the rows `RATES` hold what a metre adds to each.
+    """
+
+    X = 0
+    Y = 1
+    Z = 2
+    NORMAL_X = 3
+    NORMAL_Z = 4
+    YAW = 5
+    SEAT = 6
+    AHEAD_X = 14
+    AHEAD_Z = 15
+    LENGTH = 16
+    REST = 17
+    TO_MOUTH = 18
+    TO_SEAT = 19
+    ROOM = 20
+    PACE = 21
+    IN_ROW = 22
+
+
+VALUES, RATES = slice(0, 7), slice(7, 14)
+LEG = 23
+"""Rows of a stretch."""
+_COLUMNS: dict[str, type] = {
+    "agent": np.int64,
+    "errand": np.int8,
+    "stage": np.int8,
+    "pace": np.float32,
+    "speed": np.float32,
+    "aside": np.float32,
+    "drift": np.float32,
+    "vertex": np.int32,
+    "along": np.float32,
+    "last": np.int32,
+    "mouth": np.int32,
+    "first": np.int64,
+    "step": np.int8,
+    "passes": np.int32,
+    "run": np.int64,
+    "granted": np.bool_,
+    "waited": np.float32,
+    "until": np.int32,
+    "since": np.int32,
+    "motion": np.int16,
 }
+_LEAST = 64
 
 
 @dataclass(slots=True, eq=False)
 class Walk:
     """Per crowd: W people on their way, a row of each column for each, in the order they set out.
+
+    Columns are views of longer ones, so that nobody is copied when one more sets out: write into
+    them, but don't put others in their place.
 
     Attributes
     ----------
@@ -70,9 +102,9 @@ class Walk:
         (W,) int32 the route's last vertex.
     mouth
         (W,) int32 vertex at which the route enters or leaves a row of seats; -1 where it doesn't.
-    seat0, first, step
-        (W,) vertex of the first seat passed in the row, that seat's id, and by how much ids grow
-        from vertex to vertex.
+    first, step, passes
+        (W,) id of the first seat passed in the row, by how much ids grow from seat to seat, and how
+        many are passed, one's own not counted.
     run
         (W,) int64 the row of one block; -1 for those on patrol.
     granted
@@ -83,81 +115,79 @@ class Walk:
         (W,) int32 pose tick until which someone on patrol stands.
     motion, since
         (W,) int16 motion of the library that is shown, and int32 pose tick since when.
-    route
-        (W, P, 3) float32 vertices; (W, P) slices beside them are in `room` and `reach`.
-    normal
-        (W, P, 2) float32 to the right of the route, x and z.
-    room
-        (W, P) float32 metres that a person's middle may be aside.
-    reach
-        (W, P) float32 metres from the beginning to each vertex.
+    leg
+        (23, W) float32 the stretch of the way that each is on, a row for each of `Leg`.
+    ways
+        For each of the W people (vertices, 23) float32, all stretches of the way.
     """
 
-    agent: NDArray[np.int64] = None  # type: ignore[assignment]
-    errand: NDArray[np.int8] = None  # type: ignore[assignment]
-    stage: NDArray[np.int8] = None  # type: ignore[assignment]
-    pace: NDArray[np.float32] = None  # type: ignore[assignment]
-    speed: NDArray[np.float32] = None  # type: ignore[assignment]
-    aside: NDArray[np.float32] = None  # type: ignore[assignment]
-    drift: NDArray[np.float32] = None  # type: ignore[assignment]
-    vertex: NDArray[np.int32] = None  # type: ignore[assignment]
-    along: NDArray[np.float32] = None  # type: ignore[assignment]
-    last: NDArray[np.int32] = None  # type: ignore[assignment]
-    mouth: NDArray[np.int32] = None  # type: ignore[assignment]
-    seat0: NDArray[np.int32] = None  # type: ignore[assignment]
-    first: NDArray[np.int64] = None  # type: ignore[assignment]
-    step: NDArray[np.int8] = None  # type: ignore[assignment]
-    run: NDArray[np.int64] = None  # type: ignore[assignment]
-    granted: NDArray[np.bool_] = None  # type: ignore[assignment]
-    waited: NDArray[np.float32] = None  # type: ignore[assignment]
-    until: NDArray[np.int32] = None  # type: ignore[assignment]
-    since: NDArray[np.int32] = None  # type: ignore[assignment]
-    motion: NDArray[np.int16] = None  # type: ignore[assignment]
-    route: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 3), np.float32))
-    normal: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 2), np.float32))
-    room: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0), np.float32))
-    reach: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0), np.float32))
+    agent: NDArray[np.int64] = field(init=False)
+    errand: NDArray[np.int8] = field(init=False)
+    stage: NDArray[np.int8] = field(init=False)
+    pace: NDArray[np.float32] = field(init=False)
+    speed: NDArray[np.float32] = field(init=False)
+    aside: NDArray[np.float32] = field(init=False)
+    drift: NDArray[np.float32] = field(init=False)
+    vertex: NDArray[np.int32] = field(init=False)
+    along: NDArray[np.float32] = field(init=False)
+    last: NDArray[np.int32] = field(init=False)
+    mouth: NDArray[np.int32] = field(init=False)
+    first: NDArray[np.int64] = field(init=False)
+    step: NDArray[np.int8] = field(init=False)
+    passes: NDArray[np.int32] = field(init=False)
+    run: NDArray[np.int64] = field(init=False)
+    granted: NDArray[np.bool_] = field(init=False)
+    waited: NDArray[np.float32] = field(init=False)
+    until: NDArray[np.int32] = field(init=False)
+    since: NDArray[np.int32] = field(init=False)
+    motion: NDArray[np.int16] = field(init=False)
+    leg: NDArray[np.float32] = field(init=False)
+    ways: list[NDArray[np.float32]] = field(init=False, default_factory=list)
+    _store: dict[str, NDArray[np.generic]] = field(init=False, repr=False)
+    _legs: NDArray[np.float32] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Nobody walks yet."""
-        for name, (kind, shape) in _COLUMNS.items():
-            if getattr(self, name) is None:
-                setattr(self, name, np.zeros((0, *shape), kind))
+        self._store = {name: np.zeros(_LEAST, kind) for name, kind in _COLUMNS.items()}
+        self._legs = np.zeros((LEG, _LEAST), np.float32)
+        self._show(0)
 
     def __len__(self) -> int:
         """How many are on their way."""
         return len(self.agent)
 
-    def add(
-        self,
-        points: NDArray[np.float32],
-        normal: NDArray[np.float32],
-        room: NDArray[np.float32],
-        **values: float,
-    ) -> None:
-        """Let one more set out on a route of p vertices; columns not named begin at 0."""
-        count = len(points)
-        most = max(self.route.shape[1], count)
-        for name, own in (("route", points), ("normal", normal), ("room", room)):
-            self._grow(name, own, most)
-        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        self._grow("reach", np.append(0.0, np.cumsum(steps)).astype(np.float32), most)
-        for name, (kind, _) in _COLUMNS.items():
-            value = count - 1 if name == "last" else values.get(name, 0)
-            setattr(self, name, np.append(getattr(self, name), np.array([value], kind)))
+    def add(self, way: NDArray[np.float32], **values: float) -> None:
+        """Let one more set out on a way (vertices, 23); columns not named begin at 0."""
+        at = len(self)
+        if at == self._legs.shape[1]:
+            self._store = {
+                name: np.concatenate([column, np.zeros_like(column)])
+                for name, column in self._store.items()
+            }
+            self._legs = np.concatenate([self._legs, np.zeros_like(self._legs)], axis=1)
+        for name, column in self._store.items():
+            column[at] = values.get(name, 0)
+        self._store["last"][at] = len(way) - 1
+        self._legs[:, at] = way[0]
+        self.ways.append(way)
+        self._show(at + 1)
+
+    def enter(self, some: NDArray[np.int64]) -> None:
+        """Look up the stretches that some (K,) are on, after their vertices have changed."""
+        vertices = self.vertex[some].tolist()
+        for k, vertex in zip(some.tolist(), vertices, strict=True):
+            self.leg[:, k] = self.ways[k][vertex]
 
     def keep(self, mask: NDArray[np.bool_]) -> None:
         """Forget all others; `mask` is (W,) bool."""
-        for column in fields(self):
-            name = column.name
-            if name in _COLUMNS or name in ("route", "normal", "room", "reach"):
-                setattr(self, name, getattr(self, name)[mask])
+        kept = np.flatnonzero(mask)
+        for name, column in self._store.items():
+            column[: len(kept)] = getattr(self, name)[kept]
+        self._legs[:, : len(kept)] = self.leg[:, kept]
+        self.ways = [self.ways[k] for k in kept.tolist()]
+        self._show(len(kept))
 
-    def _grow(self, name: str, own: NDArray[np.float32], most: int) -> None:
-        """Append one route's vertices, padded with its last one, to a (W, P, ...) array."""
-        old = getattr(self, name)
-        table = np.zeros((len(old) + 1, most, *own.shape[1:]), np.float32)
-        table[:-1, : old.shape[1]] = old
-        table[-1, : len(own)] = own
-        table[-1, len(own) :] = own[-1]
-        setattr(self, name, table)
+    def _show(self, count: int) -> None:
+        for name, column in self._store.items():
+            setattr(self, name, column[:count])
+        self.leg = self._legs[:, :count]

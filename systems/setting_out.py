@@ -94,7 +94,7 @@ def seats_of_stewards(
     if spec.stewards > most:
         raise ValueError(f"stewards is {spec.stewards}, expected at most {most} in this stadium")
     gates = np.arange(spec.stewards) * ways.count // spec.stewards
-    posts = np.stack([ways.stairs(int(gate), 0, 0).points[0] for gate in gates])
+    posts = np.stack([ways.stairs(int(gate), 0, 0).points[-1] for gate in gates])
     ids, there = choose_stewards(plan, occupied, posts.astype(np.float64))
     return there, dict(zip(ids.tolist(), gates.tolist(), strict=True))
 
@@ -105,7 +105,10 @@ def start_walking(
     """Give a crowd its walkers, and send latecomers and stewards on their way."""
     occupied = crowd.seat.occupied
     late, when = draw_latecomers(crowd.party, occupied, crowd.spec.latecomers, rng)
-    walkers = Walkers(crowd.plan, steps.table, crowd.table, crowd.placement.yaw, occupied, rng)
+    yaw, size = crowd.placement.yaw, crowd.placement.scale
+    if crowd.physique is not None:
+        size = size * crowd.physique.legs[crowd.body.kind]
+    walkers = Walkers(crowd.plan, steps.table, crowd.table, yaw, size, occupied, rng)
     crowd.walkers = walkers
     esper.add_component(crowd.entity, walkers)
     occupied[late] = False

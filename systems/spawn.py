@@ -231,10 +231,11 @@ def _add_streams(
     rng: np.random.Generator,
 ) -> None:
     spec = crowd.spec
+    gaits = 0 if steps is None else len(steps.gaits) * (1 + cast.types)
     pool = StreamPool(
         crowd.character.skeleton,
         bank,
-        capacity=spec.streams + spec.spare_streams + (0 if steps is None else len(steps.gaits)),
+        capacity=spec.streams + spec.spare_streams + gaits,
         history=spec.history,
         markers=figure.joints,
         uniques=spec.uniques,

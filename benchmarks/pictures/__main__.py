@@ -15,6 +15,7 @@ from PIL import Image
 from .blend_space import draw_blend_space
 from .crowds import draw_block, draw_relative
 from .details import draw_levels, draw_props
+from .gangway import draw_gangway
 from .lab import draw_lab
 from .machine import draw_machine
 from .motions import SHEETS, draw_motions
@@ -40,6 +41,7 @@ PICTURES: dict[str, Callable[[], Image.Image]] = {
     "before_and_after": draw_before_and_after,
     "long_and_short": draw_long_and_short,
     "one_side": draw_one_side,
+    "walking": draw_gangway,
 }
 """By the names of their files; those of spectators need OpenGL."""
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from heapq import heappop, heappush
+from math import dist
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,7 @@ DOORS = 3
 STUB = 1.6
 """Metres behind the wall at which people begin or end their way."""
 _BODY = 0.25
+_STEP_ASIDE = 0.05
 _WALKWAY = 1.2
 _FREEDOM = 0.8
 
@@ -137,27 +139,39 @@ class Gangways:
         """Number of the row of one block that a seat is in."""
         return self._runs[int(self._plan.section[agent]), int(self._plan.row[agent])][0]
 
-    def to_seat(self, agent: int) -> Route:
-        """The quickest way from a door to a seat."""
+    def choose(self, agent: int) -> tuple[int, range]:
+        """The gangway over which a seat is reached soonest, and the seats passed from there."""
         plan = self._plan
         section, row = int(plan.section[agent]), int(plan.row[agent])
-        level = self._tier_of[section]
-        r = row - plan.structure.tiers[level].first_row
+        r = row - plan.structure.tiers[self._tier_of[section]].first_row
         first, stop = self._runs[section, row]
+        x, y, z = plan.position[:, agent].tolist()
         best: tuple[float, int, range] | None = None
         for gate, seats in zip(
             self._ends[section],
             (range(first, agent + 1), range(stop - 1, agent - 1, -1)),
             strict=True,
         ):
-            stairs = self._gates[gate].stairs
-            rise = float(np.linalg.norm(stairs[-1] - stairs[r])) / STAIR_SPEED
-            entry = self._gates[gate].mouths[r] - plan.position[:, agent]
-            cost = self._cost[gate] + rise + float(np.linalg.norm(entry)) / ROW_SPEED
+            g = self._gates[gate]
+            cost = self._cost[gate] + dist(g.stairs[-1], g.stairs[r]) / STAIR_SPEED
+            cost += dist(g.mouths[r], (x, y, z)) / ROW_SPEED
             if best is None or cost < best[0]:
                 best = (cost, gate, seats)
         assert best is not None
-        _, gate, seats = best
+        return best[1], best[2]
+
+    def door_of(self, gate: int) -> F64:
+        """(3,) the door from which a gangway is reached."""
+        while self._back[gate] >= 0:
+            gate = self._back[gate]
+        return self._gates[gate].out
+
+    def to_seat(self, agent: int) -> Route:
+        """The quickest way from a door to a seat."""
+        plan = self._plan
+        row = int(plan.row[agent])
+        r = row - plan.structure.tiers[self._tier_of[int(plan.section[agent])]].first_row
+        gate, seats = self.choose(agent)
         points, room = self._down_to(gate, r)
         points.append(self._gates[gate].mouths[r][None])
         room.append(np.array([0.05]))
@@ -180,10 +194,15 @@ class Gangways:
         )
 
     def stairs(self, gate: int, begin: int, end: int) -> Route:
-        """Along one gangway, from a row of its tier to another."""
+        """Along one gangway, from a row of its tier to another, or a few centimetres down to it."""
         g = self._gates[gate]
         rows = np.arange(begin, end + (1 if end >= begin else -1), 1 if end >= begin else -1)
+        if begin == end:
+            rows = np.repeat(rows, 2)
         points = g.stairs[rows].astype(np.float32)
+        if begin == end:
+            behind = g.landing - g.stairs[begin]
+            points[0, ::2] += _STEP_ASIDE * (behind / np.linalg.norm(behind[::2]))[::2]
         return Route(points, np.full(len(rows), g.freedom, np.float32))
 
     def rows(self, gate: int) -> int:

@@ -13,15 +13,19 @@ from numpy.typing import NDArray
 
 from ...components.motion import NEVER, MotionState
 from ...components.placement import Placement
-from ...components.walk import Errand, Stage, Walk
-from ..crowd.gaits import STILL, Gaits, nearest
+from ...components.walk import RATES, Errand, Leg, Stage, Walk
+from ..crowd.gaits import Gaits
 from ..crowd.seating import SeatPlan
 from ..streams.pool import POSE_RATE
 from .compiled import CompiledTable
 from .gangways import STAIR_SPEED, Gangways, Route
 from .guidance import BODY, NOTHING, Guidance, Order, Priority
+from .legs import FAR, legs_of, passed
 from .making_room import NEAR_ROW, RoomMakers
+from .nearby import Nearby
+from .steering import REACH
 from .table import STANDING
+from .walk_gait import Gaiting
 from .walk_now import F32, Now, advance, look
 from .walk_speed import BEFORE_MOUTH, PATIENCE, steer
 
@@ -36,7 +40,9 @@ POST = (20.0, 90.0)
 _DOOR = 0.8
 _AT_ONCE = 6
 _RETRY = 15
-_HOLD = 9
+_CHOICES = 3
+"""Pose ticks from one choice of who makes room, and of gaits, to the next."""
+_SOON = 9
 _ALIGNED = 0.02
 
 
@@ -51,6 +57,8 @@ class Walkers:
         The behaviour table, for what people do who just stand.
     home_yaw
         (N,) where people at their seats look.
+    size
+        (N,) how long their legs are, 1 for the character's own.
     occupied
         (N,) bool column of the crowd; changed when somebody comes or is gone.
     rng
@@ -78,6 +86,7 @@ class Walkers:
         gaits: Gaits,
         compiled: CompiledTable,
         home_yaw: F32,
+        size: F32,
         occupied: NDArray[np.bool_],
         rng: np.random.Generator,
     ) -> None:
@@ -91,13 +100,10 @@ class Walkers:
         self._calm, self._seated = compiled.calm[STANDING], compiled.seated
         self._walking = np.zeros(plan.count, np.bool_)
         self._held: dict[int, list[int]] = {}
-        self._routes: dict[int, Route] = {}
+        self._hopes: dict[int, tuple[float, float, int]] = {}
         self._now: Now | None = None
-        self._speeds = np.zeros(len(compiled.seated), np.float32)
-        self._sideways = np.zeros(len(compiled.seated), np.bool_)
-        for motions, speeds in (gaits.left, gaits.right, gaits.walk):
-            self._speeds[motions] = speeds
-            self._sideways[motions] = motions is not gaits.walk[0]
+        self._near = Nearby(REACH)
+        self._gaiting = Gaiting(gaits, self._calm, len(compiled.seated), size)
         nobody = np.zeros(0, np.int64), np.zeros(0, np.int16)
         none = np.zeros(len(compiled.names), np.bool_)
         self._bound, self._asked = (
@@ -131,10 +137,12 @@ class Walkers:
         moved = [self.room.move(placement, ~self.away, seconds)]
         arrived = moved[0][:0]
         if len(walk):
-            advance(walk, seconds)
+            passed = advance(walk, seconds)
             self._now = look(walk)
-            moved.append(walk.agent)
+            moved.append(walk.agent.copy())
             self._place(self._now, placement, seconds)
+            if len(passed):
+                self._pass(passed, tick)
             arrived = self._finish(tick, placement)
         if sum(map(len, moved)):
             placement.touch(np.concatenate(moved))
@@ -150,21 +158,25 @@ class Walkers:
         """
         walk, now = self.walk, None
         if len(walk):
-            now = self._now = self._now or look(walk)
-            self._grant(now)
+            now = self._now or look(walk)
+            self._grant()
             rising = np.flatnonzero(walk.stage == Stage.RISE)
-            agents = walk.agent[rising]
-            up = ~self._seated[motion.shown[agents]] & (motion.busy_until[agents] <= tick)
-            walk.stage[rising[up]] = Stage.WALK
-            steer(walk, now, self._to_seated(now, motion, tick))
-            self._show(now, tick)
-        if self.room.choose(walk, now, ~self.away):
+            if len(rising):
+                agents = walk.agent[rising]
+                up = ~self._seated[motion.shown[agents]] & (motion.busy_until[agents] <= tick)
+                walk.stage[rising[up]] = Stage.WALK
+                walk.enter(rising[up])
+            pairs = self._near.pairs(walk, now.place[0], now.place[2])
+            steer(walk, now, self._to_seated(motion, tick), pairs)
+            if tick % _CHOICES == 1:
+                self._changed |= self._gaiting.choose(walk, tick)
+        if tick % _CHOICES == 0 and self.room.choose(walk, ~self.away):
             room = self.gaits.make_room if len(self.gaits.make_room) else self._calm
             ids = self.room.agents
             guidance.revise(self._asked, ids, room[ids % len(room)])
         self._depart(tick, placement)
         if self._changed:
-            order = np.argsort(walk.agent, kind="stable")
+            order = np.argsort(walk.agent)
             guidance.revise(self._bound, walk.agent[order], walk.motion[order])
             self._changed = False
 
@@ -178,17 +190,20 @@ class Walkers:
         if not due:
             return
         some, rest = self.waiting[: min(due, _AT_ONCE)], self.waiting[min(due, _AT_ONCE) :]
-        late = [
-            (agent, errand, tick + _RETRY)
-            for agent, errand, _ in some.tolist()
-            if not self._begin(agent, Errand(errand), placement)
-        ]
-        self.waiting = rest
+        here = placement.position[::2, self.walk.agent]
+        late = []
+        for agent, errand, _ in some.tolist():
+            if not self._begin(agent, Errand(errand), placement, here):
+                late.append((agent, errand, tick + _RETRY))
+            elif errand != Errand.LEAVE:
+                here = placement.position[::2, self.walk.agent]
         if late:
-            self._queue(np.concatenate([rest, np.array(late, np.int64)]))
+            at = int(np.searchsorted(rest[:, 2], tick + _RETRY, "right"))
+            rest = np.concatenate([rest[:at], np.array(late, np.int64), rest[at:]])
+        self.waiting = rest
 
-    def _begin(self, agent: int, errand: Errand, placement: Placement) -> bool:
-        """Let somebody set out; False if there is no room yet."""
+    def _begin(self, agent: int, errand: Errand, placement: Placement, here: F32) -> bool:
+        """Let somebody set out; False if others (2, W) are in the way yet, or come towards it."""
         if errand is Errand.PATROL:
             gate = self.posts[agent]
             route = self.ways.stairs(gate, min(1, self.ways.rows(gate) - 1), 0)
@@ -196,21 +211,25 @@ class Walkers:
             placement.position[:, agent] = route.points[0]
             return True
         run = self.ways.run_of(agent)
-        route = self._routes.pop(agent) if agent in self._routes else self.ways.to_seat(agent)
-        x, _, z = route.points[0]
-        others = placement.position[:, self.walk.agent]
+        if agent not in self._hopes:
+            gate, seats = self.ways.choose(agent)
+            x, _, z = self.ways.door_of(gate).tolist()
+            self._hopes[agent] = (x, z, seats.step)
+        x, z, step = self._hopes[agent]
         if errand is Errand.ARRIVE:
-            if len(self.walk) and np.hypot(others[0] - x, others[2] - z).min() < _DOOR:
-                self._routes[agent] = route
+            dx, dz = here[0] - np.float32(x), here[1] - np.float32(z)
+            if (dx * dx + dz * dz < np.float32(_DOOR * _DOOR)).any():
                 return False
+        elif not self._take(run, -step):
+            return False
+        del self._hopes[agent]
+        route = self.ways.to_seat(agent)
+        if errand is Errand.ARRIVE:
             self._occupied[agent] = True
             placement.position[:, agent] = route.points[0]
             ahead = route.points[1] - route.points[0]
             placement.yaw[agent] = np.arctan2(ahead[0], ahead[2])
         else:
-            if not self._take(run, -route.step):
-                self._routes[agent] = route
-                return False
             route = route.reversed(len(route.points) - route.seat0)
         self._add(agent, errand, route, run)
         return True
@@ -218,23 +237,28 @@ class Walkers:
     def _add(self, agent: int, errand: Errand, route: Route, run: int) -> None:
         mean, spread, least, most = PACE
         self.walk.add(
-            route.points,
-            route.normal,
-            route.room,
+            legs_of(route, errand, self._plan.yaw),
             agent=agent,
             errand=errand,
             stage=Stage.RISE if errand is Errand.LEAVE else Stage.WALK,
             pace=float(np.clip(self._rng.normal(mean, spread), least, most)),
             mouth=route.mouth,
-            seat0=route.seat0,
             first=route.first,
             step=route.step,
+            passes=passed(route, errand),
             run=run,
             granted=errand is not Errand.ARRIVE,
             motion=int(self._calm[agent % len(self._calm)]),
         )
+        if errand is Errand.LEAVE:
+            self._look_ahead(np.array([len(self.walk) - 1]))
         self._walking[agent] = self.away[agent] = self._changed = True
         self._now = None
+
+    def _look_ahead(self, some: Ints) -> None:
+        """Let some (K,) turn to where they look at their seats."""
+        self.walk.leg[Leg.YAW, some] = self._home_yaw[self.walk.agent[some]]
+        self.walk.leg[RATES][Leg.YAW, some] = 0.0
 
     def _take(self, run: int, step: int) -> bool:
         """Promise a row to somebody who goes that way along it; False while others come."""
@@ -251,56 +275,72 @@ class Walkers:
             if not self._held[run][1]:
                 del self._held[run]
 
-    def _grant(self, now: Now) -> None:
+    def _grant(self) -> None:
         walk = self.walk
-        asks = ~walk.granted & (now.to_mouth < BEFORE_MOUTH + 1.0)
+        asks = walk.leg[Leg.TO_MOUTH] - walk.along < np.float32(BEFORE_MOUTH + 1.0)
+        asks &= ~walk.granted
         for k in np.flatnonzero(asks):
             walk.granted[k] = self._take(int(walk.run[k]), int(walk.step[k]))
+
+    def _pass(self, passed: Ints, tick: int) -> None:
+        """What follows for those (K,) who passed a vertex: a row is free, or a way ends."""
+        walk = self.walk
+        out = (walk.errand[passed] == Errand.LEAVE) & (walk.run[passed] >= 0)
+        out &= walk.vertex[passed] >= walk.mouth[passed]
+        self._give(walk.run[passed[out]])
+        walk.run[passed[out]] = -1
+        ends = passed[walk.vertex[passed] >= walk.last[passed]]
+        if not len(ends):
+            return
+        walk.speed[ends] = walk.drift[ends] = 0.0
+        walk.stage[ends[walk.errand[ends] == Errand.LEAVE]] = Stage.GONE
+        settles = ends[walk.errand[ends] == Errand.ARRIVE]
+        walk.stage[settles] = Stage.SETTLE
+        self._look_ahead(settles)
+        patrol = ends[walk.errand[ends] == Errand.PATROL]
+        walk.stage[patrol] = Stage.STAND
+        # Up on the stairs they only turn round: who stood there would be in the way.
+        stay = self._rng.uniform(*POST, len(patrol))
+        for k, seconds in zip(patrol.tolist(), stay.tolist(), strict=True):
+            down = walk.ways[k][-1, Leg.Y] <= walk.ways[k][0, Leg.Y]
+            walk.until[k] = tick + round((seconds if down else 1.0) * POSE_RATE)
+        walk.leg[Leg.YAW, patrol] += np.float32(np.pi)
 
     def _finish(self, tick: int, placement: Placement) -> Ints:
         """Those who came to the end of their way; ids of who is at its seat."""
         walk = self.walk
-        leaves = walk.errand == Errand.LEAVE
-        out = leaves & (walk.run >= 0) & (walk.vertex >= walk.mouth)
-        if out.any():
-            self._give(walk.run[out])
-            walk.run[out] = -1
-        ends = (walk.vertex >= walk.last) & (walk.stage == Stage.WALK)
-        if ends.any():
-            walk.stage[ends & (walk.errand == Errand.ARRIVE)] = Stage.SETTLE
-            patrol = ends & (walk.errand == Errand.PATROL)
-            walk.stage[patrol] = Stage.STAND
-            walk.speed[ends] = walk.drift[ends] = 0.0
-            # Up on the stairs they only turn round: who stood there would be in the way.
-            stay = self._rng.uniform(*POST, int(patrol.sum()))
-            down = walk.route[patrol, walk.last[patrol], 1] <= walk.route[patrol, 0, 1]
-            walk.until[patrol] = tick + np.rint(np.where(down, stay, 1.0) * POSE_RATE)
-        facing = _wrapped(self._home_yaw[walk.agent] - placement.yaw[walk.agent])
-        arrived = (walk.stage == Stage.SETTLE) & (np.abs(facing) < _ALIGNED)
-        done = arrived | (ends & leaves)
+        arrived = np.flatnonzero(walk.stage == Stage.SETTLE)
+        if len(arrived):
+            agents = walk.agent[arrived]
+            facing = _wrapped(self._home_yaw[agents] - placement.yaw[agents])
+            arrived = arrived[np.abs(facing) < _ALIGNED]
         ids: Ints = walk.agent[arrived]
-        if done.any():
+        gone = walk.stage == Stage.GONE
+        if len(arrived) or gone.any():
             self._give(walk.run[arrived])
-            all_done = walk.agent[done]
-            placement.touch(all_done)
-            placement.position[:, all_done] = self._plan.position[:, all_done]
-            placement.yaw[all_done] = self._home_yaw[all_done]
-            self.away[ids] = self._walking[all_done] = False
-            self._occupied[walk.agent[ends & leaves]] = False
-            self._forget(done)
-        again = (walk.stage == Stage.STAND) & (walk.until <= tick)
+            self._occupied[walk.agent[gone]] = False
+            gone[arrived] = True
+            done = walk.agent[gone]
+            placement.position[:, done] = self._plan.position[:, done]
+            placement.yaw[done] = self._home_yaw[done]
+            self.away[ids] = self._walking[done] = False
+            self._forget(gone)
+        again = walk.stage == Stage.STAND
         if again.any():
-            self._patrol(again)
+            self._patrol(again & (walk.until <= tick))
         return ids
 
     def _forget(self, some: NDArray[np.bool_]) -> None:
+        self._near.keep(~some)
         self.walk.keep(~some)
         self._now, self._changed = None, True
 
     def _patrol(self, again: NDArray[np.bool_]) -> None:
-        """Send stewards up their gangway, to as far as its middle, or down again."""
+        """Send stewards (W,) up their gangway, to as far as its middle, or down again."""
         walk = self.walk
-        agents, at = walk.agent[again], walk.route[again, walk.last[again], 1]
+        if not again.any():
+            return
+        agents, at = walk.agent[again], walk.leg[Leg.Y, again]
         asides, motions = walk.aside[again], walk.motion[again]
         self._forget(again)
         for k, agent in enumerate(agents.tolist()):
@@ -315,76 +355,34 @@ class Walkers:
 
     # On the way.
 
-    def _to_seated(self, now: Now, motion: MotionState, tick: int) -> F32:
+    def _to_seated(self, motion: MotionState, tick: int) -> F32:
         """(W,) metres along the row to the next person who sits yet; inf if nobody does."""
-        walk = self.walk
-        after = np.maximum(np.floor(now.seat).astype(np.int64) + 1, 0)
-        some = np.flatnonzero(
-            (now.in_row | (now.to_mouth < NEAR_ROW))
-            & (after < now.passes)
-            & (walk.waited < PATIENCE)
-        )
+        walk, leg = self.walk, self.walk.leg
         room = np.full(len(walk), np.inf, np.float32)
-        after = after[some]
+        near = leg[Leg.IN_ROW] > 0
+        near |= leg[Leg.TO_MOUTH] - walk.along < np.float32(NEAR_ROW)
+        near &= walk.waited < np.float32(PATIENCE)
+        some = np.flatnonzero(near)
+        some = some[leg[Leg.TO_SEAT, some] < FAR]
+        after = np.maximum(leg[Leg.SEAT, some].astype(np.int64) + 1, 0)
         ids = walk.first[some] + walk.step[some] * after
-        busy = self._seated[motion.shown[ids]] | (motion.busy_until[ids] > tick + _HOLD)
+        busy = self._seated[motion.shown[ids]] | (motion.busy_until[ids] > tick + _SOON)
         busy &= ~self.away[ids]
-        some, after = some[busy], after[busy]
-        room[some] = walk.reach[some, walk.seat0[some] + after] - now.covered[some]
+        some = some[busy]
+        room[some] = leg[Leg.TO_SEAT, some] - walk.along[some]
         return room
-
-    def _show(self, now: Now, tick: int) -> None:
-        """Choose gaits by speed; a gait lasts a third of a second at least."""
-        walk = self.walk
-        still = (walk.speed < STILL) | (walk.stage != Stage.WALK)
-        motion = nearest(self.gaits.walk, walk.speed)
-        some = np.flatnonzero(now.in_row)
-        if len(some):
-            yaw = self._yaw_in_row(now, some)
-            to_left = now.tangent[0, some] * np.cos(yaw) > now.tangent[1, some] * np.sin(yaw)
-            speed = walk.speed[some]
-            left, right = nearest(self.gaits.left, speed), nearest(self.gaits.right, speed)
-            motion[some] = np.where(to_left, left, right)
-        before = self._speeds[walk.motion]
-        calm = self._calm[walk.agent % len(self._calm)]
-        motion = np.where(still, np.where(before == 0.0, walk.motion, calm), motion)
-        off = np.abs(self._speeds[motion] - walk.speed) + np.float32(0.02)
-        better = off < np.abs(before - walk.speed)
-        turns = self._sideways[motion] != self._sideways[walk.motion]
-        change = (motion != walk.motion) & (better | turns | still) & (tick - walk.since >= _HOLD)
-        if change.any():
-            walk.motion = np.where(change, motion, walk.motion)
-            walk.since[change] = tick
-            self._changed = True
-
-    def _yaw_in_row(self, now: Now, some: Ints) -> F32:
-        """Where those look (K,) who pass the seats of a row: to the pitch, as people there do."""
-        walk = self.walk
-        index = np.clip(
-            np.rint(now.seat[some]).astype(np.int64), 0, np.maximum(now.passes[some], 0)
-        )
-        index = np.where(
-            walk.errand[some] == Errand.LEAVE, np.minimum(index, now.passes[some] - 1), index
-        )
-        yaw: F32 = self._plan.yaw[walk.first[some] + walk.step[some] * index]
-        return yaw
 
     def _place(self, now: Now, placement: Placement, seconds: float) -> None:
         walk = self.walk
         agents = walk.agent
-        placement.position[0, agents] = now.x
-        placement.position[1, agents] = now.y
-        placement.position[2, agents] = now.z
-        ahead = np.arctan2(now.tangent[0], now.tangent[1])
-        wanted = np.where(walk.stage == Stage.STAND, ahead + np.float32(np.pi), ahead)
-        some = np.flatnonzero(now.in_row)
-        wanted[some] = self._yaw_in_row(now, some)
-        at_home = (walk.stage == Stage.SETTLE) | (walk.stage == Stage.RISE)
-        wanted = np.where(at_home, self._home_yaw[agents], wanted)
-        most = np.float32(TURN * seconds)
+        for axis in (0, 1, 2):
+            placement.position[axis, agents] = now.place[axis]
         yaw = placement.yaw[agents]
-        turn = np.minimum(np.maximum(_wrapped(wanted - yaw), -most), most)
-        placement.yaw[agents] = _wrapped(yaw + turn)
+        turn = _wrapped(now.yaw - yaw)
+        most = np.float32(TURN * seconds)
+        np.minimum(np.maximum(turn, -most, out=turn), most, out=turn)
+        yaw += turn
+        placement.yaw[agents] = _wrapped(yaw)
 
 
 def _wrapped(angle: F32) -> F32:

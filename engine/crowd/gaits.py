@@ -178,10 +178,16 @@ def add_gaits(
 def start_gaits(
     pool: StreamPool, gaits: Sequence[Gait], first_clip: int, streams: MotionStreams
 ) -> MotionStreams:
-    """Start a stream for each gait, on rows that are free; places of all motions with them."""
-    return streams.followed_by(
-        [start_staggered(pool, first_clip + k, 1, gait.rate) for k, gait in enumerate(gaits)]
-    )
+    """Start a stream for each gait, on rows that are free; places of all motions with them.
+
+    Where other motions are shown on the pool's body types, gaits are as well.
+    """
+    rows = [start_staggered(pool, first_clip + k, 1, gait.rate) for k, gait in enumerate(gaits)]
+    if len(pool.twins):
+        for (row,) in rows:
+            for kind in pool.twins.types:
+                pool.add_twin(pool.stream(int(row)), kind.name)
+    return streams.followed_by(rows)
 
 
 def nearest(

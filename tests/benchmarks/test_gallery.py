@@ -183,7 +183,7 @@ def test_a_sheet_mixes_light_and_not_bytes() -> None:
 def test_the_page_shows_every_picture() -> None:
     page = (DOCS / "gallery.md").read_text("utf-8")
     shown = set(re.findall(r"!\[[^\]]+\]\(([\w-]+)\.png\)", page))
-    new = {"bodies", "hair", "levels", "shirts", "props", "block", "relative"}
+    new = {"bodies", "hair", "levels", "shirts", "props", "block", "relative", "walking"}
     assert shown == new | {f"motions-{k + 1}" for k in range(SHEETS)}
     assert shown <= set(PICTURES)
     assert sum((DOCS / f"{name}.png").stat().st_size for name in shown) < 6_000_000

@@ -124,7 +124,7 @@ def test_behaviour_prints_published_figures_and_draws(
     result = figures(capsys, *words)
     situations = result["situations"]
     assert isinstance(situations, dict)
-    assert set(situations) == {"quiet", "all_clap", "wave"}
+    assert set(situations) == {"quiet", "all_clap", "wave", "walking"}
     shown = result["figures"]
     assert isinstance(shown, list)
     assert len(shown) > 15

@@ -89,6 +89,11 @@ def test_stairs_follow_the_treads() -> None:
     run = np.linalg.norm(np.diff(up[:, ::2], axis=0), axis=1)
     np.testing.assert_allclose(run, 0.8, atol=1e-4)
     np.testing.assert_array_equal(ways.stairs(3, 5, 0).points, up[::-1])
+    stay = ways.stairs(3, 2, 2).points
+    np.testing.assert_array_equal(stay[1], up[2])
+    assert np.linalg.norm(stay[0] - stay[1]) == pytest.approx(0.05, abs=1e-4)
+    # It begins on the side of the landing, behind.
+    assert (stay[0] - stay[1]) @ (up[3] - up[2]) > 0
     assert FEET - IN_FRONT > 0.0  # rows are walked on their own tread
 
 

@@ -23,7 +23,8 @@ COORDINATE = st.floats(-20, 20, width=32)
 @settings(max_examples=80, deadline=None)
 def test_pairs_are_those_within_reach(places: list[tuple[float, float]], reach: float) -> None:
     x, z = np.array(places, np.float32).reshape(-1, 2).T
-    a, b = pairs_within(x, z, reach)
+    a, b, away = pairs_within(x, z, reach)
+    np.testing.assert_array_equal(away, [x[a] - x[b], z[a] - z[b]])
     found = {frozenset(pair) for pair in zip(a.tolist(), b.tolist(), strict=True)}
     assert len(found) == len(a)
     apart = (x[:, None] - x) ** 2 + (z[:, None] - z) ** 2
@@ -61,20 +62,23 @@ def test_force_is_the_gradient_of_the_potential() -> None:
         # Whoever looks straight against the force sees where it comes from.
         heading = np.zeros((2, 2), np.float32)
         heading[:, 0] = -wanted / np.linalg.norm(wanted)
-        pairs = (np.array([0]), np.array([1]))
-        found = repulsion(x, z, velocity, heading, pairs)[:, 0]
+        found = repulsion(pairs_within(x, z, 9.0), velocity, heading)[:, 0]
         np.testing.assert_allclose(found, wanted, rtol=2e-2, atol=1e-3)
+        # The other way round it is the same, whichever of a pair comes first.
+        pairs = pairs_within(x[::-1], z[::-1], 9.0)
+        turned = repulsion(pairs, velocity[:, ::-1], heading[:, ::-1])[:, 1]
+        np.testing.assert_allclose(turned, wanted, rtol=2e-2, atol=1e-3)
 
 
 def test_what_is_behind_counts_half() -> None:
     x, z = np.zeros(2, np.float32), np.array([0.0, 0.8], np.float32)
     still = np.zeros((2, 2), np.float32)
-    pairs = (np.array([0]), np.array([1]))
+    pairs = pairs_within(x, z, 2.0)
 
     def push(degrees: float) -> float:
         turn = np.deg2rad(degrees)
         heading = np.array([[np.sin(turn)] * 2, [np.cos(turn)] * 2], np.float32)
-        return float(np.linalg.norm(repulsion(x, z, still, heading, pairs)[:, 0]))
+        return float(np.linalg.norm(repulsion(pairs, still, heading)[:, 0]))
 
     assert np.isclose(SIGHT, np.cos(np.deg2rad(100)))
     assert np.isclose(push(99.0), push(0.0))
@@ -86,6 +90,6 @@ def test_what_is_behind_counts_half() -> None:
 def test_forces_of_a_pair_that_stands_are_opposite() -> None:
     x, z = np.array([0.0, 0.5], np.float32), np.array([0.0, 0.3], np.float32)
     heading = np.array([[0.5, -0.5], [0.3, -0.3]], np.float32) / np.float32(np.hypot(0.5, 0.3))
-    force = repulsion(x, z, np.zeros((2, 2), np.float32), heading, pairs_within(x, z, 2.0))
+    force = repulsion(pairs_within(x, z, 2.0), np.zeros((2, 2), np.float32), heading)
     np.testing.assert_allclose(force[:, 0], -force[:, 1], rtol=1e-5)
     assert force[0, 0] < 0
