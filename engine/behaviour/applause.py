@@ -21,7 +21,7 @@ hazard that anybody can have, and each is accepted with its own share of it, whi
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp
+from math import exp, log
 from typing import NamedTuple
 
 import numpy as np
@@ -282,8 +282,9 @@ class Applause:
         """(K,) what is left of the cue; below 0 it doesn't fade."""
         age = (self._now - self._since[agents]).astype(np.float32)
         cue = np.where(age >= 0.0, self._benefit[agents], self._until_seen[agents])
-        fading = np.exp2(age * np.float32(-1.0 / self.rates.half_life))
-        return np.where(cue < 0, cue, cue * fading)
+        # exp of float32 is several times as fast as exp2.
+        fading = np.exp(np.multiply(age, np.float32(-log(2.0) / self.rates.half_life), out=age))
+        return np.where(cue < 0, cue, np.multiply(cue, fading, out=fading))
 
     def _promised(
         self, left: NDArray[np.float32], agents: NDArray[np.int64] | slice = slice(None)
