@@ -205,9 +205,14 @@ class Applause:
         self._highest = (max(self._bound(), float(values.max(initial=0.0))), seen)
 
     def cue_crowd(
-        self, who: NDArray[np.bool_], benefit: NDArray[np.float32] | float, *, refuse: bool = False
+        self,
+        who: NDArray[np.bool_],
+        benefit: NDArray[np.float32] | float,
+        *,
+        refuse: bool = False,
+        ago: float = 0.0,
     ) -> None:
-        """`cue` for much of the crowd at once.
+        """`cue` for much of the crowd at once, of what happened `ago` seconds before now.
 
         `who` (N,) is whom it concerns; `benefit` one for all or (N,), finite, and nothing is read
         of others; `refuse` says whether it is below 0, for all of them.
@@ -219,7 +224,7 @@ class Applause:
             who &= self._benefit < 0.0  # it ends a refusal, and nothing else
         if not who.any():
             return
-        seen = self._now + self.rates.reaction
+        seen = self._now - ago + self.rates.reaction
         before = np.zeros(1, np.float32)
         if self._bound() > 0.0 and not refuse:
             left = self._left()

@@ -26,21 +26,22 @@ from ...components.behaviour import Behaviour
 from ...components.emotion import Emotion
 from ...components.party import Party
 from ...components.placement import Placement
-from ...components.team import NEUTRAL, Team
+from ...components.team import Team
 from ..crowd.agents import agent_ids
 from ..crowd.seating import SeatPlan
 from ..streams.pool import POSE_RATE
 from .applause import Applause
 from .compiled import CompiledTable
 from .contagion import EmotionContagion
-from .events import KINDS, PLACED, Event
+from .cueing import Cues
+from .events import PLACED, Event
 from .following import Following
 from .hearing import Hearing
 from .machine import wake
 from .parties import turn_towards
-from .responses import WITNESS_RADIUS, distance_to
+from .responses import distance_to
 from .rhythm import Rhythm
-from .table import PIECE, SEATED, Relation
+from .table import PIECE, SEATED
 from .wave import MexicanWave
 
 TALKING_REACH = 1.6
@@ -104,6 +105,7 @@ class Company:
         self._plan, self._present, self._rng = plan, present, rng
         self.rhythm = Rhythm(hearing, rng)
         self.applause = Applause(hearing, rng, self.rhythm.rate)
+        self._cues = Cues(self.applause, team)
         self.contagion = EmotionContagion(plan, present, team.side)
         self.contagion.excitement_rest = emotion.rest_excitement
         self.party, self.following = party, Following(party, team)
@@ -171,6 +173,7 @@ class Company:
             and (event.weight or 0.0) >= ENDS_WAVE
         ):
             self._wave.reset()
+        distance = None
         if event.place is None:
             self.signals["distance"][:] = np.inf
         else:
@@ -186,34 +189,14 @@ class Company:
                 here = np.flatnonzero(self.applause.hearing.present)
                 nearest = np.argsort(distance[here], kind="stable")[:WAVE_STARTERS]
                 self.start_wave(here[nearest])
-        kind, weight = KINDS.index(event.kind), event.weight or 0.0
-        for relation in Relation:
-            response = compiled.responses.get((kind, relation))
-            if response is None or (response.applause == 0.0 and response.mood <= 0.0):
-                continue  # what is good for people ends their refusal
-            if event.kind in PLACED:
-                assert event.place is not None
-                who = (distance <= WITNESS_RADIUS) & (relation == Relation.NEAR)
-            elif relation == Relation.NEUTRAL:
-                who = team.side == NEUTRAL
-            elif event.side is None:
-                who = (team.side != NEUTRAL) & (relation == Relation.OWN)
-            else:
-                who = (team.side != NEUTRAL) & (
-                    (team.side == event.side) == (relation == Relation.OWN)
-                )
-                who &= relation in (Relation.OWN, Relation.OTHER)
-            benefit = response.applause * weight
-            if response.applause > 0:
-                self.applause.cue_crowd(who, team.fervour * np.float32(benefit))
-            else:
-                self.applause.cue_crowd(who, benefit, refuse=benefit < 0)
+        self._cues.take(event, compiled, distance)
         return greeted
 
     def step(self, tick: int, emotion: Emotion, behaviour: Behaviour) -> None:
         """Advance all mechanisms by a pose tick, and wake those whose signals change."""
         self.contagion.step(emotion.mood, emotion.excitement, _STEP, emotion.susceptibility)
         self._boil(tick, emotion)
+        self._cues.step()
         started, stopped = self.applause.step(_STEP)
         wanted = self.signals["clapping_wanted"]
         for ids, value in ((started, True), (stopped, False)):
