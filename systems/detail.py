@@ -44,11 +44,9 @@ class DetailSystem(esper.Processor):
                 continue
             figure = esper.component_for_entity(entity, Figure)
             bounds = esper.try_component(entity, Bounds)
-            if bounds is None or bounds.version != placement.version:
+            if bounds is None or not bounds.fits(placement):
                 bounds = Bounds.of(placement)
                 esper.add_component(entity, bounds)
-            elif bounds.touches != placement.touches:
-                bounds.follow(placement)
             select_detail(
                 detail,
                 placement,

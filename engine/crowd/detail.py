@@ -57,14 +57,9 @@ class Bounds:
             placement.touches,
         )
 
-    def follow(self, placement: Placement) -> None:
-        """Fit the boxes of groups in which somebody was moved since (`Placement.touch`)."""
-        for group in np.flatnonzero(placement.touched > self.touches):
-            some = slice(group * _GROUP, (group + 1) * _GROUP)
-            place, scale = placement.position[:, some], placement.scale[some]
-            self.low[:, group] = (*place.min(axis=1), scale.min())
-            self.high[:, group] = (*place.max(axis=1), scale.max())
-        self.touches = placement.touches
+    def fits(self, placement: Placement) -> bool:
+        """Whether nobody was moved since; making new ones is cheaper than finding out who was."""
+        return (self.version, self.touches) == (placement.version, placement.touches)
 
     def ids(self, rows: NDArray[np.float32], edges: NDArray[np.float32], count: int) -> Ints:
         """Ids below `count` of the groups that reach beyond the edges of all planes (P, 4)."""

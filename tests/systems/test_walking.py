@@ -262,15 +262,23 @@ def test_nobody_on_the_way_costs_nothing(make: Make) -> None:
 def test_boxes_follow_walkers(make: Make) -> None:
     simulation = make(walking=True)
     crowd = simulation.crowd
-    bounds = Bounds.of(crowd.placement)
+    simulation.look(np.eye(4, dtype=np.float32), np.eye(4, dtype=np.float32), 720)
+    simulation.advance(0.0)
+    with simulation.active():
+        before = esper.component_for_entity(crowd.entity, Bounds)
+    assert before.fits(crowd.placement)
     crowd.leave(np.flatnonzero(crowd.seat.occupied)[5:200:50])
     simulation.run(seconds=12.0)
-    assert bounds.touches != crowd.placement.touches
-    bounds.follow(crowd.placement)
-    fresh = Bounds.of(crowd.placement)
-    np.testing.assert_array_equal(bounds.low, fresh.low)
-    np.testing.assert_array_equal(bounds.high, fresh.high)
-    assert bounds.touches == crowd.placement.touches
+    assert not before.fits(crowd.placement)
+    simulation.advance(0.0)
+    with simulation.active():
+        after = esper.component_for_entity(crowd.entity, Bounds)
+    assert after.fits(crowd.placement)
+    assert (after.low != before.low).any()
+    np.testing.assert_array_equal(
+        after.low[1],
+        np.minimum.reduceat(crowd.placement.position[1], np.arange(0, len(crowd), 256)),
+    )
 
 
 def test_children_walk_on_their_own_bodies(make: Make) -> None:
