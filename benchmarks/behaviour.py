@@ -21,10 +21,13 @@ from ..engine.crowd.spec import CrowdSpec
 from ..engine.crowd.stadium import build_seats
 from . import experiments as ex
 from .measure import environment, spread
+from .moods import MATCH, MINUTES, moods
 from .plot import Panel, draw_panels
 from .walking import walking_costs
 
 TICK = ex.TICK
+PEOPLE_AT_MATCH = 600
+"""Of the match that is drawn: few, since all of it is run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +67,7 @@ def behaviour(
     _emotion(plan, present, rng, figures, panels)
     _parties(plan, rng, figures)
     if plot is not None:
+        panels.append(_moods(seed))
         draw_panels(panels, plot)
     costs = tick_costs(plan, present, runs, rng)
     walking, people = walking_costs(runs, seed)
@@ -242,6 +246,21 @@ def _emotion(
             "share that claps; excitement",
             [("share that claps", seconds, share), ("mean excitement", seconds, mean)],
         )
+    )
+
+
+def _moods(seed: int) -> Panel:
+    match = moods(PEOPLE_AT_MATCH, MINUTES, seed)
+    goals = [f"{minute:.0f}" for minute, kind, _ in MATCH if kind == "goal"]
+    return Panel(
+        f"A match of 2:1, goals after {', '.join(goals[:-1])} and {goals[-1]} minutes",
+        "minutes",
+        "mean of a side",
+        [
+            (f"{name}, {side}", match.minutes, column[:, number])
+            for name, column in (("mood", match.mood), ("excitement", match.excitement))
+            for number, side in enumerate(("home", "away"))
+        ],
     )
 
 

@@ -56,10 +56,12 @@ def test_nobody_is_clipped_and_no_picture_empty(
         return shots[-1]
 
     monkeypatch.setattr(module, "take", taken)
-    picture = draw(0.22)
+    # Levels are also shown as small as they are used: in a small picture nothing would be left.
+    tiny = name == "levels"
+    picture = draw(1.0 if tiny else 0.22)
     for shot in shots:
         assert shot.cover.max() > 0.9
-        assert shot.cover.mean() > 0.004
+        assert shot.cover.sum() > 60 if tiny else shot.cover.mean() > 0.004
         border = [shot.cover[0], shot.cover[:, 0], shot.cover[:, -1]]
         border += [shot.cover[-1]] if whole else []
         assert max(float(edge.max()) for edge in border) < 0.05

@@ -117,8 +117,9 @@ def test_ten_thousand_nodes_take_less_than_5_ms_a_frame(
 
 @pytest.mark.slow
 def test_behaviour_prints_published_figures_and_draws(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("tifo.benchmarks.behaviour.MINUTES", 3.0)
     plot = tmp_path / "curves.png"
     words = ("behaviour", "--agents", "12000", "--runs", "5", "--plot", str(plot))
     result = figures(capsys, *words)

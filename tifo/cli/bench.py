@@ -9,7 +9,8 @@ variety: how alike neighbours look and move, before and after casting.
 scripting: a frame of many nodes with `_process`, and emissions of a signal.
 scaling: behaviour alone, quiet and after goals, of 1,000 agents to 1,000,000 or --agents.
 behaviour: applause, rhythm, waves, emotions and parties: what comes out of the models beside what
-  is published of people, and what a tick of them and of walking costs; with --plot, curves.
+  is published of people, and what a tick of them and of walking costs; --plot draws curves, and
+  moods over a match, which takes a minute or two.
 soak: a match of --minutes with --events random events, without poses, as fast as it goes: whether
   people end up doing what they did in the beginning, and nothing gets stuck or grows.
 """
