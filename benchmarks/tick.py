@@ -19,8 +19,8 @@ from .measure import environment, spread
 from .synthetic import synthetic_character
 
 SIZE = (1280, 720)
-GOALS, CALM = 9, 60
-"""Goals that are timed, and pose ticks between them."""
+GOALS, CALM = 6, 450
+"""Goals that are timed, and pose ticks between them: the cheers of the last one are over."""
 FILL = 20
 """Ticks of every 40 from which on slots are filled."""
 

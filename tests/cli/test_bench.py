@@ -37,7 +37,10 @@ def test_evaluate_trees_beside_clips(capsys: pytest.CaptureFixture[str]) -> None
     assert "times as long as plain clips" in capsys.readouterr().out
 
 
-def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
+def test_tick_reports_every_system(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tifo.benchmarks.tick.CALM", 20)
     result = figures(
         capsys, "tick", "--agents", "300", "--streams", "16", "--joints", "12", "--runs", "6"
     )
@@ -51,7 +54,10 @@ def test_tick_reports_every_system(capsys: pytest.CaptureFixture[str]) -> None:
     assert result["goal_tick_ms"] > 0  # type: ignore[operator]
 
 
-def test_tick_with_slots_in_use(capsys: pytest.CaptureFixture[str]) -> None:
+def test_tick_with_slots_in_use(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tifo.benchmarks.tick.CALM", 20)
     words = ("--agents", "300", "--streams", "16", "--joints", "12", "--runs", "6")
     assert figures(capsys, "tick", *words, "--slots", "40")["slots_in_use"] == 40
     assert figures(capsys, "tick", *words, "--slots", "0")["slots_in_use"] == 0
