@@ -292,8 +292,9 @@ def _draw(
     mean = np.empty(pixels.shape, np.float32)
     mean[..., :3] = to_linear(np.arange(256) / 255.0).astype(np.float32)[pixels[..., :3]]
     mean[..., 3] = pixels[..., 3] / np.float32(255.0)
-    mean = mean.reshape(size[1], SHARPER, size[0], SHARPER, 4).mean(axis=(1, 3))
-    return Shot(mean[..., :3], mean[..., 3], *_joints(simulation, camera, size))
+    mean = mean.reshape(size[1], SHARPER, size[0], SHARPER, 4)
+    small = mean.mean(axis=(1, 3)).astype(np.float64)
+    return Shot(small[..., :3], small[..., 3], *_joints(simulation, camera, size))
 
 
 def _joints(

@@ -388,5 +388,5 @@ class Walkers:
 def _wrapped(angle: F32) -> F32:
     """The same angle from -pi to pi."""
     whole = np.float32(2.0 * np.pi)
-    result: F32 = angle - whole * np.rint(angle / whole)
+    result: F32 = np.subtract(angle, whole * np.rint(angle / whole), dtype=np.float32)
     return result

@@ -136,5 +136,5 @@ def parted_colours(
     lights = np.stack([to_linear(first), to_linear(second)])
     factor = lights.max(axis=0)
     left = to_srgb(np.where(factor > 0.0, lights / np.where(factor > 0.0, factor, 1.0), 1.0))
-    steps = np.rint(left / STEP).astype(np.int64).tolist()
-    return factor, *(tuple(STEP * step for step in one) for one in steps)
+    one, other = (STEP * np.rint(left / STEP).astype(np.int64)).tolist()
+    return factor, tuple(one), tuple(other)

@@ -141,7 +141,8 @@ def dilate(
     row = anim.row[part, agents].astype(np.int64)
     _check(pool, row, wanted, seconds, fastest)
     current = shown_offsets(pool, anim, part, agents, tick)
-    rate = np.abs(wanted - current) / np.float32(max(seconds * POSE_RATE, 1e-6))
+    ticks = max(seconds * POSE_RATE, 1e-6)
+    rate = np.divide(np.abs(wanted - current), ticks, dtype=np.float32)
     return _creep(anim, part, agents, current, wanted, rate, tick, fastest)
 
 
