@@ -2,8 +2,8 @@
 
 *Thesis* 2.2.1: a group follows its leader or only shares a label. Who follows looks at the leader
 three times a second, an agent at one of ten pose ticks, so that a party moves within a third of a
-second of him and not as one. What is nobody's leader's to decide stays as it was: somebody who is
-moved and whose leader isn't cheers by himself, and something bigger isn't interrupted.
+second of him and not as one. Nobody is held back: somebody who is moved and whose leader isn't
+cheers by himself, and something bigger isn't interrupted.
 """
 
 from __future__ import annotations
