@@ -29,7 +29,7 @@ USUAL_SPEED = 1.3
 STILL = 0.12
 """Metres a second below which somebody stands."""
 
-_WALK = re.compile(r"^walk(ing)?(_\d+)?$", re.IGNORECASE)
+_WALK = re.compile(r"^walk(ing)?(_(\d+|[a-z]))?$", re.IGNORECASE)
 _SIDE = "side_step"
 _PASS = "let_pass"
 """Clips of the built-in spectator; people with other clips walk or stand instead."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,24 @@ def test_no_walk(built_in: Any) -> None:
     character, hips = built_in
     with pytest.raises(ValueError, match="no clip 'walk'"):
         make_gaits([clip for clip in character.clips if "walk" not in clip.name], hips)
+
+
+@pytest.mark.parametrize(
+    ("name", "walks"),
+    [("Walking_A", True), ("walk_2", True), ("Walking", True), ("Walking_Backwards", False),
+     ("WalkJump", False)],
+)  # fmt: skip
+def test_walks_are_known_by_the_names_that_files_give_them(
+    built_in: Any, name: str, walks: bool
+) -> None:
+    character, hips = built_in
+    clip = next(clip for clip in character.clips if clip.name == "walk")
+    if walks:
+        (own, *_) = make_gaits([replace(clip, name=name)], hips)
+        assert own.clip.name == name
+    else:
+        with pytest.raises(ValueError, match="no clip 'walk'"):
+            make_gaits([replace(clip, name=name)], hips)
 
 
 @pytest.mark.parametrize(("name", "way"), [("side_step", 1.0), ("side_step_2", -1.0)])
