@@ -199,14 +199,12 @@ class Company:
         self._cues.step()
         started, stopped = self.applause.step(_STEP)
         wanted = self.signals["clapping_wanted"]
-        for ids, value in ((started, True), (stopped, False)):
-            if len(ids):
-                wanted[ids] = value
-                wake(behaviour, 0, ids, tick)
+        wanted[started], wanted[stopped] = True, False
         # Others hear who begins from now on, so it begins now, unless its arms do something else.
-        at_rest = started[behaviour.arms[started] == 0]
-        if len(at_rest):
-            wake(behaviour, 0, at_rest, tick, rapid=True)
+        at_rest = behaviour.arms[started] == 0
+        wake(behaviour, 0, started[at_rest], tick, rapid=True)
+        for later in (started[~at_rest], stopped):
+            wake(behaviour, 0, later, tick)
         self._watch_player(tick, behaviour)
         self.following.step(tick, behaviour, self._away)
         waving = self.signals["wave_wanted"]

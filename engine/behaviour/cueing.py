@@ -10,12 +10,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...components.team import NEUTRAL, Team
+from ...components.team import Team
 from ..streams.pool import POSE_RATE
 from .applause import Applause
 from .compiled import CompiledTable
 from .events import KINDS, PLACED, Event
-from .responses import WITNESS_RADIUS
+from .responses import WITNESS_RADIUS, relations_of
 from .table import Relation
 
 SPREAD = 3
@@ -73,19 +73,8 @@ class Cues:
             if left:
                 self._waiting.append((event, relation, benefit, after, left - 1))
             else:
-                self._give(self._whom(event, relation), benefit, after / POSE_RATE)
-
-    def _whom(self, event: Event, relation: Relation) -> NDArray[np.bool_]:
-        """(N,) to whom an event without a place is that."""
-        side, neutral = self._team.side, self._team.side == NEUTRAL
-        who: NDArray[np.bool_] = np.zeros(len(side), np.bool_)
-        if relation == Relation.NEUTRAL:
-            who = neutral
-        elif relation == Relation.OWN:
-            who = ~neutral if event.side is None else side == event.side
-        elif relation == Relation.OTHER and event.side is not None:
-            who = ~neutral & (side != event.side)
-        return who
+                to_each = relations_of(event).take(self._team.side, mode="wrap")
+                self._give(to_each == relation, benefit, after / POSE_RATE)
 
     def _give(self, who: NDArray[np.bool_], benefit: float, ago: float) -> None:
         reason = self._team.fervour * np.float32(benefit) if benefit > 0 else benefit

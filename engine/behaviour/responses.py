@@ -262,6 +262,21 @@ def _wake(
         _Some(agents, moved & (how > 0)).write(behaviour.until[machine], rest)
 
 
+def relations_of(event: Event) -> NDArray[np.int8]:
+    """(sides + 1,) what an event without a place is to each side.
+
+    The last side is the neutral one, so that -1 is a place in it like any other, with
+    ``take(side, mode="wrap")``.
+    """
+    # What is nobody's is everybody's own.
+    usual = Relation.OWN if event.side is None else Relation.OTHER
+    of_side = np.full(MOST_SIDES + 1, usual, np.int8)
+    of_side[NEUTRAL] = Relation.NEUTRAL
+    if event.side is not None:
+        of_side[event.side] = Relation.OWN
+    return of_side
+
+
 def _groups(
     event: Event, team: Team, placement: Placement, present: NDArray[np.bool_], part: slice
 ) -> Iterator[tuple[NDArray[np.int64] | slice, NDArray[np.int8]]]:
@@ -275,15 +290,9 @@ def _groups(
         is_hit = (distance[agents] <= HIT_RADIUS) & (event.kind == "ball_in_crowd")
         yield agents, np.where(is_hit, np.int8(Relation.HIT), np.int8(Relation.NEAR))
         return
-    # What is nobody's is everybody's own.
-    usual = Relation.OWN if event.side is None else Relation.OTHER
-    of_side = np.full(MOST_SIDES + 1, usual, np.int8)
-    of_side[NEUTRAL] = Relation.NEUTRAL
-    if event.side is not None:
-        of_side[event.side] = Relation.OWN
+    of_side = relations_of(event)
     for start in range(part.start, part.stop, BLOCK):
         block = slice(start, min(start + BLOCK, part.stop))
-        # The last side is the neutral one, so -1 is a place in it like any other.
         relation = of_side.take(team.side[block], mode="wrap")
         if not present[block].all():
             relation[~present[block]] = _NOBODY
